@@ -1,0 +1,65 @@
+#include "cfd_server/backends/native/fluid_participant.hpp"
+
+#include <chrono>
+
+#include "proto/base/errors.hpp"
+#include "proto/participant/field_names.hpp"
+
+namespace fluxpact {
+namespace {
+
+void add_state(const FluidState& state, Fields& out) {
+  out.add(field::face_flux, std::span<const double>(state.face_flux));
+  out.add(field::velocity, std::span<const Vector3>(state.velocity));
+  out.add(field::pressure, std::span<const double>(state.pressure));
+  out.add(field::pressure_gradient, std::span<const Vector3>(state.pressure_gradient));
+}
+
+}  // namespace
+
+Identity NativeFluid::identity() const {
+  return {Role::fluid,
+          "native",
+          {field::face_flux, field::velocity, field::pressure, field::pressure_gradient, field::impulse_taken},
+          {field::voidage, field::drag_coefficient, field::drag_source}};
+}
+
+VansSolver& NativeFluid::solver() {
+  if (!solver_) throw ProtocolError("fluid: called before configure; the scene and the mesh must come first");
+  return *solver_;
+}
+
+void NativeFluid::configure(const Scene& scene, const Mesh& mesh) {
+  solver_ = std::make_unique<VansSolver>(scene, mesh);
+  cells_ = mesh.cells();
+  impulse_.assign(static_cast<std::size_t>(cells_), Vector3::Zero());
+}
+
+void NativeFluid::start(const Fields& in, Fields& out) {
+  solver().start(in.scalars(field::voidage, cells_));
+  add_state(solver().committed(), out);
+}
+
+void NativeFluid::advance(const Window& window, const Fields& in, Fields& out, const Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const SolidsInput solids{in.scalars(field::voidage, cells_), in.scalars(field::drag_coefficient, cells_),
+                           in.vectors(field::drag_source, cells_)};
+  solver().advance(window, solids, progress);
+  const FluidState& state = solver().candidate();
+  for (int cell = 0; cell < cells_; ++cell) {
+    impulse_[cell] =
+        window.length * (solids.drag_source[cell] - solids.drag_coefficient[cell] * state.velocity[cell]);
+  }
+  add_state(state, out);
+  out.add(field::impulse_taken, std::span<const Vector3>(impulse_));
+  out.add_number(field::solver_iterations, solver().report().iterations);
+  out.add_number(field::closure_correction, solver().report().closure_correction);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  out.add_number(field::wall_seconds, spent.count());
+}
+
+void NativeFluid::commit() { solver().commit(); }
+void NativeFluid::rollback() { solver().rollback(); }
+void NativeFluid::snapshot(Fields& /*out*/) {}
+
+}  // namespace fluxpact

@@ -1,0 +1,92 @@
+#include "cfd_server/discretisation/stencil.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+void add_faces(const Mesh& mesh, Stencil& s) {
+  double largest_cross = 0;
+  for (int f = 0; f < s.faces; ++f) {
+    const bool internal = f < s.internal_faces;
+    const Vector3& area = mesh.face_areas[f];
+    const Vector3 from_owner = mesh.face_centres[f] - mesh.cell_centres[mesh.owner[f]];
+    const Vector3 delta = internal ? mesh.delta[f] : from_owner;
+    const double projected = delta.dot(area);
+    if (!(projected > 0) || !(from_owner.dot(area) > 0) || from_owner.dot(area) > projected) {
+      throw ConfigError(
+          "mesh: face {} at ({}, {}, {}) does not lie between the centres of its cells (cell {}); the mesh is too "
+          "skewed for a two-point flux: move its points or make the cells convex",
+          f, mesh.face_centres[f].x(), mesh.face_centres[f].y(), mesh.face_centres[f].z(), mesh.owner[f]);
+    }
+    const double conductance = area.squaredNorm() / projected;
+    s.area.push_back(area);
+    s.area_size.push_back(area.norm());
+    s.weight.push_back(internal ? from_owner.dot(area) / projected : 1.0);
+    s.conductance.push_back(conductance);
+    s.cross.emplace_back(area - conductance * delta);
+    s.delta.push_back(delta);
+    s.from_owner.push_back(from_owner);
+    if (internal) s.from_neighbour.emplace_back(from_owner - delta);
+    largest_cross = std::max(largest_cross, s.cross.back().norm() / area.norm());
+  }
+  // A lattice is recognised up to a relative 1e-6 of its spacing; what remains of k is rounding.
+  s.orthogonal = mesh.lattice.has_value() || largest_cross < 1e-12;
+  if (s.orthogonal) s.cross.clear();
+}
+
+void add_sides(const Mesh& mesh, Stencil& s) {
+  s.side_offsets.assign(static_cast<std::size_t>(s.cells) + 1, 0);
+  for (const int cell : mesh.owner) ++s.side_offsets[cell + 1];
+  for (const int cell : mesh.neighbour) ++s.side_offsets[cell + 1];
+  for (int cell = 0; cell < s.cells; ++cell) s.side_offsets[cell + 1] += s.side_offsets[cell];
+  const auto sides = static_cast<std::size_t>(s.side_offsets.back());
+  s.side_face.resize(sides);
+  s.side_other.resize(sides);
+  s.side_sign.resize(sides);
+  std::vector<int> next(s.side_offsets.begin(), s.side_offsets.end() - 1);
+  const auto add = [&](int cell, int face, int other, double sign) {
+    const int side = next[cell]++;
+    s.side_face[side] = face;
+    s.side_other[side] = other;
+    s.side_sign[side] = sign;
+  };
+  for (int f = 0; f < s.faces; ++f) {
+    const bool internal = f < s.internal_faces;
+    add(s.owner[f], f, internal ? s.neighbour[f] : -1, 1.0);
+    if (internal) add(s.neighbour[f], f, s.owner[f], -1.0);
+  }
+}
+
+bool has_equal_cells(const Lattice& lattice) {
+  return std::ranges::all_of(lattice.nodes, [](const std::vector<double>& nodes) {
+    const double mean = (nodes.back() - nodes.front()) / static_cast<double>(nodes.size() - 1);
+    for (std::size_t i = 1; i < nodes.size(); ++i) {
+      if (std::abs(nodes[i] - nodes[i - 1] - mean) > 1e-6 * mean) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
+Stencil make_stencil(const Mesh& mesh) {
+  Stencil s;
+  s.cells = mesh.cells();
+  s.faces = mesh.faces();
+  s.internal_faces = mesh.internal_faces();
+  s.owner = mesh.owner;
+  s.neighbour = mesh.neighbour;
+  s.volume = mesh.cell_volumes;
+  s.centre = mesh.cell_centres;
+  add_faces(mesh, s);
+  add_sides(mesh, s);
+  s.centred = mesh.lattice.has_value();
+  s.uniform = mesh.lattice && has_equal_cells(*mesh.lattice);
+  return s;
+}
+
+}  // namespace fluxpact

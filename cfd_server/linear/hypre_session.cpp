@@ -1,0 +1,50 @@
+#include "cfd_server/linear/hypre_session.hpp"
+
+#include <HYPRE_utilities.h>
+#include <mpi.h>
+#include <omp.h>
+
+#include <cstdlib>
+
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+void end_mpi() {
+  int finalized = 0;
+  MPI_Finalized(&finalized);
+  if (finalized == 0) MPI_Finalize();
+}
+
+}  // namespace
+
+void start_hypre() {
+  int initialized = 0;
+  MPI_Initialized(&initialized);
+  if (initialized == 0) {
+    // One process needs no daemon and no network; what the user has set stays.
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_btl", "self", 0);
+    setenv("OMPI_MCA_pml", "ob1", 0);
+    if (MPI_Init(nullptr, nullptr) != MPI_SUCCESS) {
+      throw SystemError("hypre: MPI_Init failed; choose fluid.numerics.solver: conjugate_gradient to do without");
+    }
+    HYPRE_Init();
+    std::atexit(end_mpi);
+  }
+}
+
+OneThread::OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+OneThread::~OneThread() { omp_set_num_threads(before_); }
+
+void check_hypre(const char* call) {
+  const int error = HYPRE_GetError();
+  if (error == 0) return;
+  HYPRE_ClearAllErrors();
+  if (error == HYPRE_ERROR_CONV) return;
+  throw NumericsError("fluid: hypre reports error {} in {}; choose fluid.numerics.solver: conjugate_gradient to do without",
+                      error, call);
+}
+
+}  // namespace fluxpact

@@ -1,0 +1,102 @@
+#include "cfd_server/linear/momentum_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+constexpr double tolerance = 1e-10;
+constexpr int most_iterations = 1000;
+
+double dot(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+/// y += factor x
+void add(double factor, const std::vector<Vector3>& x, std::vector<Vector3>& y) {
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
+}
+
+}  // namespace
+
+MomentumSolver::MomentumSolver(const Stencil& stencil, std::vector<SlipFace> slip_faces)
+    : slip(std::move(slip_faces)), stencil_(stencil) {
+  const auto cells = static_cast<std::size_t>(stencil.cells);
+  diagonal.assign(cells, 0.0);
+  weight.assign(stencil.side_face.size(), 0.0);
+  for (auto* values : {&residual, &change, &shadow_, &direction_, &hat_, &product_, &second_}) {
+    values->assign(cells, Vector3::Zero());
+  }
+}
+
+void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
+  for (int cell = 0; cell < stencil_.cells; ++cell) {
+    Vector3 sum = diagonal[cell] * x[cell];
+    for (int side = stencil_.side_offsets[cell]; side < stencil_.side_offsets[cell + 1]; ++side) {
+      const int other = stencil_.side_other[side];
+      if (other >= 0) sum -= weight[side] * x[other];
+    }
+    y[cell] = sum;
+  }
+  for (const SlipFace& face : slip) {
+    y[face.cell] -= face.weight * (x[face.cell] - x[face.cell].dot(face.normal) * face.normal);
+  }
+}
+
+void MomentumSolver::precondition(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] / diagonal[i];
+}
+
+int MomentumSolver::solve(double scale_squared) {
+  std::ranges::fill(change, Vector3::Zero());
+  const double target = tolerance * tolerance * scale_squared;
+  double norm = dot(residual, residual);
+  double rho = 0;
+  int iterations = 0;
+  bool restart = true;
+  while (!(norm <= target)) {
+    if (iterations == most_iterations || !std::isfinite(norm)) {
+      throw NumericsError(
+          "fluid: the momentum predictor has the relative residual {} after {} iterations; shorten coupling.window",
+          std::sqrt(norm / scale_squared), iterations);
+    }
+    if (restart) {
+      shadow_ = residual;
+      direction_ = residual;
+      rho = norm;
+      restart = false;
+    }
+    precondition(direction_, hat_);
+    multiply(hat_, product_);
+    const double alpha = rho / dot(shadow_, product_);
+    add(alpha, hat_, change);
+    add(-alpha, product_, residual);
+    precondition(residual, hat_);
+    multiply(hat_, second_);
+    const double squared = dot(second_, second_);
+    const double omega = squared > 0 ? dot(second_, residual) / squared : 0.0;
+    add(omega, hat_, change);
+    add(-omega, second_, residual);
+    norm = dot(residual, residual);
+    ++iterations;
+    const double rho_next = dot(shadow_, residual);
+    // The recurrence breaks down when the residual turns orthogonal to the shadow: start it anew from here.
+    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(dot(shadow_, shadow_)) || omega == 0) {
+      restart = true;
+      continue;
+    }
+    const double beta = rho_next / rho * (alpha / omega);
+    for (std::size_t i = 0; i < direction_.size(); ++i) {
+      direction_[i] = residual[i] + beta * (direction_[i] - omega * product_[i]);
+    }
+    rho = rho_next;
+  }
+  return iterations;
+}
+
+}  // namespace fluxpact

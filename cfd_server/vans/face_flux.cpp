@@ -1,0 +1,90 @@
+#include "cfd_server/vans/face_flux.hpp"
+
+namespace fluxpact {
+
+double rebuilt_share(const Stencil& stencil) { return stencil.uniform ? 1.0 : 0.2; }
+
+void resize(FaceCoefficients& c, const Stencil& s) {
+  for (auto* values : {&c.mobility, &c.transport_resistance, &c.memory}) {
+    values->assign(static_cast<std::size_t>(s.faces), 0.0);
+  }
+}
+
+void assemble_faces(const Stencil& s, const BoundaryConditions& conditions, const MomentumCoefficients& m,
+                    std::span<const double> voidage, std::span<const double> old_flux, double density, double window,
+                    FaceCoefficients& c) {
+  for (int f = 0; f < s.faces; ++f) {
+    const bool internal = f < s.internal_faces;
+    if (!internal && conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
+    const int p = s.owner[f];
+    const double w = s.weight[f];
+    const double part_p = w / (voidage[p] * voidage[p] * s.volume[p]);
+    double transport = part_p * m.transport[p];
+    double rest = part_p * (m.inertia[p] + m.drag[p]);
+    double inverse_voidage = w / voidage[p];
+    if (internal) {
+      const int n = s.neighbour[f];
+      const double part_n = (1 - w) / (voidage[n] * voidage[n] * s.volume[n]);
+      transport += part_n * m.transport[n];
+      rest += part_n * (m.inertia[n] + m.drag[n]);
+      inverse_voidage += (1 - w) / voidage[n];
+    }
+    c.transport_resistance[f] = transport;
+    c.mobility[f] = 1 / (transport + rest);
+    c.memory[f] = density * old_flux[f] / window * inverse_voidage;
+  }
+}
+
+void explicit_flux(const Stencil& s, const BoundaryConditions& conditions, const BoundaryValues& values,
+                   const FaceCoefficients& c, const FaceFluxInput& in, std::span<double> flux) {
+  const double rebuilt = rebuilt_share(s);
+  for (int f = 0; f < s.faces; ++f) {
+    const bool internal = f < s.internal_faces;
+    const int b = f - s.internal_faces;
+    if (!internal && conditions.kind[b] != FaceKind::pressure) {
+      flux[f] = values.flux[b];
+      continue;
+    }
+    const int p = s.owner[f];
+    const double w = s.weight[f];
+    Vector3 force = w * in.specific_force[p];
+    Vector3 value = in.superficial[p] + in.superficial_gradient[p] * s.from_owner[f];
+    Vector3 slope = Vector3::Zero();
+    if (!s.orthogonal) slope = internal ? Vector3((1 - w) * in.pressure_gradient[p]) : in.pressure_gradient[p];
+    if (internal) {
+      const int n = s.neighbour[f];
+      force += (1 - w) * in.specific_force[n];
+      value = 0.5 * (value + in.superficial[n] + in.superficial_gradient[n] * s.from_neighbour[f]);
+      if (!s.orthogonal) slope += w * in.pressure_gradient[n];
+    }
+    const double face_value = rebuilt * value.dot(s.area[f]) + (1 - rebuilt) * in.last_flux[f];
+    double driving = force.dot(s.area[f]) + c.memory[f] + c.transport_resistance[f] * face_value;
+    if (!s.orthogonal) driving -= s.cross[f].dot(slope);
+    flux[f] = c.mobility[f] * driving;
+  }
+}
+
+void add_pressure_flux(const Stencil& s, const BoundaryConditions& conditions, const FaceCoefficients& c,
+                       std::span<const double> pressure, std::span<double> flux) {
+  for (int f = 0; f < s.faces; ++f) {
+    const double outside =
+        f < s.internal_faces ? pressure[s.neighbour[f]] : conditions.pressure[f - s.internal_faces];
+    flux[f] -= c.mobility[f] * s.conductance[f] * (outside - pressure[s.owner[f]]);
+  }
+}
+
+void predict_flux(const Stencil& s, std::span<const double> old_flux, std::span<const Vector3> superficial,
+                  std::span<const Vector3> old_superficial, std::span<double> flux) {
+  for (int f = 0; f < s.faces; ++f) {
+    const int p = s.owner[f];
+    const double w = s.weight[f];
+    Vector3 change = superficial[p] - old_superficial[p];
+    if (f < s.internal_faces) {
+      const int n = s.neighbour[f];
+      change = (1 - w) * change + w * (superficial[n] - old_superficial[n]);
+    }
+    flux[f] = old_flux[f] + change.dot(s.area[f]);
+  }
+}
+
+}  // namespace fluxpact

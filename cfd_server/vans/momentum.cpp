@@ -1,0 +1,97 @@
+#include "cfd_server/vans/momentum.hpp"
+
+#include <algorithm>
+
+namespace fluxpact {
+namespace {
+
+void assemble_faces(const Stencil& s, const BoundaryConditions& conditions, const FluidProperties& fluid,
+                    std::span<const double> flux, std::span<const double> voidage, TransportCoefficients& faces) {
+  for (int f = 0; f < s.internal_faces; ++f) {
+    const double w = s.weight[f];
+    const double face_voidage = (1 - w) * voidage[s.owner[f]] + w * voidage[s.neighbour[f]];
+    faces.mass_flux[f] = flux[f];
+    faces.diffusion[f] = fluid.viscosity * face_voidage * s.conductance[f];
+  }
+  for (int f = s.internal_faces; f < s.faces; ++f) {
+    // Through a pressure face the cell's own velocity passes, either way: no net force.
+    const bool fixed = conditions.kind[f - s.internal_faces] == FaceKind::fixed_flux;
+    faces.mass_flux[f] = fixed ? flux[f] : 0.0;
+    faces.diffusion[f] = fixed ? fluid.viscosity * voidage[s.owner[f]] * s.conductance[f] : 0.0;
+  }
+  finish_coefficients(faces);
+  for (int f = s.internal_faces; f < s.faces; ++f) {
+    // A free-slip wall holds the normal part of the velocity only: it has a weight, but no gradient of its own.
+    if (conditions.kind[f - s.internal_faces] == FaceKind::free_slip) {
+      faces.into_owner[f] = fluid.viscosity * voidage[s.owner[f]] * s.conductance[f];
+    }
+  }
+}
+
+}  // namespace
+
+void resize(MomentumCoefficients& c, const Stencil& s) {
+  const auto cells = static_cast<std::size_t>(s.cells);
+  const auto faces = static_cast<std::size_t>(s.faces);
+  for (auto* values : {&c.inertia, &c.drag, &c.transport}) values->assign(cells, 0.0);
+  for (auto* values : {&c.known, &c.source}) values->assign(cells, Vector3::Zero());
+  for (auto* values :
+       {&c.faces.mass_flux, &c.faces.diffusion, &c.faces.into_owner, &c.faces.into_neighbour}) {
+    values->assign(faces, 0.0);
+  }
+}
+
+void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions, const FluidProperties& fluid,
+                       const FluidState& old_state, const SolidsInput& solids, double window,
+                       MomentumCoefficients& c) {
+  assemble_faces(s, conditions, fluid, old_state.face_flux, solids.voidage, c.faces);
+  std::ranges::fill(c.transport, 0.0);
+  for (int f = 0; f < s.faces; ++f) {
+    c.transport[s.owner[f]] += c.faces.into_owner[f];
+    if (f < s.internal_faces) c.transport[s.neighbour[f]] += c.faces.into_neighbour[f];
+  }
+  for (int cell = 0; cell < s.cells; ++cell) {
+    c.inertia[cell] = fluid.density * s.volume[cell] * old_state.voidage[cell] / window;
+    c.drag[cell] = solids.drag_coefficient[cell];
+    c.source[cell] = solids.drag_source[cell];
+    c.known[cell] = c.inertia[cell] * old_state.velocity[cell] + c.source[cell];
+  }
+}
+
+int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
+                     std::span<const double> voidage, std::span<const Vector3> force,
+                     std::span<const Vector3> pressure_gradient, MomentumSolver& solver,
+                     std::span<Vector3> velocity) {
+  double scale = 0;
+  for (int cell = 0; cell < s.cells; ++cell) {
+    const double diagonal = c.inertia[cell] + c.drag[cell];
+    solver.diagonal[cell] = diagonal + c.transport[cell];
+    solver.residual[cell] = c.known[cell] + force[cell] - diagonal * velocity[cell] -
+                            voidage[cell] * s.volume[cell] * pressure_gradient[cell];
+    scale += c.known[cell].squaredNorm() + (solver.diagonal[cell] * velocity[cell]).squaredNorm();
+  }
+  for (std::size_t side = 0; side < s.side_face.size(); ++side) {
+    const int f = s.side_face[side];
+    solver.weight[side] = s.side_other[side] < 0  ? 0.0
+                          : s.side_sign[side] > 0 ? c.faces.into_owner[f]
+                                                  : c.faces.into_neighbour[f];
+  }
+  for (std::size_t i = 0; i < solver.slip.size(); ++i) {
+    solver.slip[i].weight = c.faces.into_owner[solver.slip[i].face];
+  }
+  const int iterations = solver.solve(scale);
+  for (int cell = 0; cell < s.cells; ++cell) velocity[cell] += solver.change[cell];
+  return iterations;
+}
+
+void close_momentum(const Stencil& s, const MomentumCoefficients& c, std::span<const double> voidage,
+                    std::span<const Vector3> force, std::span<const Vector3> velocity_before,
+                    std::span<const Vector3> velocity, std::span<Vector3> pressure_gradient) {
+  for (int cell = 0; cell < s.cells; ++cell) {
+    pressure_gradient[cell] = (c.known[cell] + force[cell] + c.transport[cell] * (velocity_before[cell] - velocity[cell]) -
+                               (c.inertia[cell] + c.drag[cell]) * velocity[cell]) /
+                              (voidage[cell] * s.volume[cell]);
+  }
+}
+
+}  // namespace fluxpact

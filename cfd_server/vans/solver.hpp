@@ -1,0 +1,65 @@
+// The volume-averaged Navier-Stokes solver: one window forward for given voidage and drag.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "proto/mesh/mesh.hpp"
+#include "proto/participant/participant.hpp"
+#include "proto/scene/scene.hpp"
+
+namespace fluxpact {
+
+/// What the particle side says of the window's end; one row a cell.
+struct SolidsInput {
+  std::span<const double> voidage;  ///< ε^{n+1} [-]
+  std::span<const double>
+      drag_coefficient;  ///< B [kg/s]: force on the fluid in a cell is S − B u^{n+1}
+  std::span<const Vector3> drag_source;  ///< S [N]
+};
+
+/// The fluid at one time level.
+struct FluidState {
+  std::vector<double> voidage;    ///< ε the state was solved with, bit for bit as received
+  std::vector<double> face_flux;  ///< Φ [kg/s], superficial, out of the owner
+  std::vector<Vector3> velocity;  ///< u [m/s], interstitial
+  std::vector<double> pressure;   ///< p_d = p − ρ g·x [Pa]
+  std::vector<Vector3> pressure_gradient;  ///< [Pa/m] that closes the cell's momentum balance
+};
+
+/// How the last window went.
+struct FluidReport {
+  int iterations = 0;             ///< of the pressure solver, all correctors
+  int predictor_iterations = 0;   ///< of the momentum predictor
+  int legacy_iterations = 0;      ///< passes over the lagged mass source (continuity: legacy)
+  double legacy_change = 0;       ///< last relative change of a flux where those passes ran out, else 0
+  double closure_correction = 0;  ///< largest flux change by the closure over the largest flux [-]
+};
+
+class VansSolver {
+ public:
+  /// Throws ConfigError if the scene cannot be solved on this mesh (a patch without a condition,
+  /// ...).
+  VansSolver(const Scene& scene, const Mesh& mesh);
+  ~VansSolver();
+
+  /// The state of time 0 for this voidage: the scene's initial superficial velocity, closed fluxes
+  /// at the boundary.
+  void start(std::span<const double> voidage);
+
+  /// From the committed state to a candidate. Throws NumericsError naming field, cell, value, step.
+  void advance(const Window& window, const SolidsInput& solids, const Progress& progress);
+  void commit();
+  void rollback();
+
+  const FluidState& committed() const;
+  const FluidState& candidate() const;
+  const FluidReport& report() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fluxpact

@@ -1,0 +1,12 @@
+# One interface target carries what every translation unit of ours is compiled with.
+# No -ffast-math: the same bits for any number of threads is a promise.
+# Contraction into fused multiply-adds is a fixed choice of the compiler for one binary, so it stays.
+add_library(fluxpact_options INTERFACE)
+target_include_directories(fluxpact_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+target_compile_options(fluxpact_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # false alarms on std::string in g++ 12 (GCC bug 105651)
+if(FLUXPACT_SANITIZE)
+  target_compile_options(fluxpact_options INTERFACE -fsanitize=${FLUXPACT_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(fluxpact_options INTERFACE -fsanitize=${FLUXPACT_SANITIZE})
+endif()

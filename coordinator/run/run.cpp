@@ -1,0 +1,190 @@
+#include "coordinator/run/run.hpp"
+
+#include <fmt/chrono.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "coordinator/coupling/run_step.hpp"
+#include "coordinator/record/recorder.hpp"
+#include "coordinator/run/progress.hpp"
+#include "coordinator/run/summary.hpp"
+#include "coordinator/scene/load_scene.hpp"
+#include "coordinator/session/interrupt.hpp"
+#include "proto/base/logging.hpp"
+#include "proto/base/version.hpp"
+#include "proto/mesh/box.hpp"
+#include "proto/participant/field_names.hpp"
+#include "proto/scene/read_scene.hpp"
+
+namespace fluxpact {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+double seconds_since(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
+}
+
+Scene resolve_scene(const RunOptions& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.directory) overrides.push_back("output.directory=" + options.directory->string());
+  if (options.until) overrides.push_back(fmt::format("scene.end_time={}", *options.until));
+  Scene scene = load_scene(options.scene, overrides);
+  if (scene.output.directory.empty()) scene.output.directory = "runs/" + scene.scene.name;
+  return scene;
+}
+
+/// True in the windows after which something that is due every `every` seconds is recorded.
+bool is_due(double every, std::int64_t step, double window) {
+  if (every <= 0) return false;
+  const auto interval = std::max<std::int64_t>(1, std::llround(every / window));
+  return step % interval == 0;
+}
+
+/// A run that has started: what it needs from the first window to the last.
+class Run {
+ public:
+  Run(const Scene& scene, const Mesh& mesh, bool quiet)
+      : scene_(scene),
+        recorder_(scene.output.directory, mesh,
+                  {write_scene(scene), version_line(), scene.coupling.continuity}),
+        log_((log_to_file("coordinator", "info", recorder_.directory() / "run.log"),
+              recorder_.directory() / "run.log")),
+        session_(scene, mesh, log_),
+        coupling_{scene, mesh, session_},
+        progress_(windows(scene), quiet) {}
+
+  ~Run() { session_.close(); }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  ExitCode run() {
+    session_.greet(write_scene(scene_), coupling_.mesh);
+    state_ = start_coupling(coupling_);
+    summary_.start(coupling_.mesh, scene_, state_);
+    record({0, 0.0}, true, true);
+    try {
+      advance_to_end();
+    } catch (const Error&) {
+      record_last_committed();
+      throw;
+    }
+    if (moment_.step != recorded_fields_ || moment_.step != recorded_particles_)
+      record(moment_, true, true);
+    recorder_.close();
+    progress_.finish();
+    return interrupts() > 0 && moment_.step < windows(scene_) ? ExitCode::interrupted
+                                                              : ExitCode::done;
+  }
+
+  std::string summary() const { return summary_.text(scene_, seconds_since(begin_)); }
+
+ private:
+  void advance_to_end() {
+    const std::int64_t last = windows(scene_);
+    const double length = scene_.coupling.window;
+    for (std::int64_t step = 1; step <= last && interrupts() == 0; ++step) {
+      const Window window{step, static_cast<double>(step - 1) * length, length};
+      const StepResult result = run_step(coupling_, window, state_);
+      if (!result.committed) {
+        throw ConservationError(
+            "step {}: {}; stopped at the last committed window, t = {} s. To go on all the same "
+            "set "
+            "coupling.audit.on_violation: warn",
+            step, describe(result.verdict, result.row), moment_.time);
+      }
+      warn_of_violation(result);
+      moment_ = {step, window.end()};
+      const auto begin = SteadyClock::now();
+      recorder_.append(result.row);
+      record(moment_, is_due(scene_.output.fields.every, step, length),
+             is_due(scene_.output.particles.every, step, length));
+      summary_.add(result.row, state_, seconds_since(begin));
+      progress_.show(step, result.row);
+    }
+  }
+
+  void warn_of_violation(const StepResult& result) {
+    if (result.verdict.pass) return;
+    if (violations_++ == 0)
+      spdlog::warn("step {}: {} (said once)", result.row.step,
+                   describe(result.verdict, result.row));
+    summary_.count_violation();
+  }
+
+  void record(const Moment& moment, bool fields, bool particles) {
+    if (fields) record_fields(moment);
+    if (!particles) return;
+    Message request;
+    request.header.type = MessageType::snapshot;
+    const Message reply = session_.ask(Role::particles, request);
+    recorded_particles_ = moment.step;
+    if (reply.header.arrays.empty()) return;  // solids without particles
+    const Fields snapshot = fields_of(reply);
+    const auto count = static_cast<int>(snapshot.views().front().values.size());
+    recorder_.record_particles(moment, {.id = snapshot.scalars("id", count),
+                                        .position = snapshot.vectors("position", count),
+                                        .velocity = snapshot.vectors("velocity", count),
+                                        .spin = snapshot.vectors("spin", count),
+                                        .radius = snapshot.scalars("radius", count),
+                                        .density = snapshot.scalars("density", count)});
+  }
+
+  void record_fields(const Moment& moment) {
+    const int cells = coupling_.mesh.cells();
+    const Fields particles = fields_of(state_.particles);
+    const Fields fluid = fields_of(state_.fluid);
+    recorder_.record_fields(
+        moment, {.voidage = particles.scalars(field::voidage, cells),
+                 .velocity = fluid.vectors(field::velocity, cells),
+                 .pressure = fluid.scalars(field::pressure, cells),
+                 .drag_coefficient = particles.scalars(field::drag_coefficient, cells),
+                 .particle_velocity = particles.vectors(field::particle_velocity, cells),
+                 .face_flux = fluid.scalars(field::face_flux, coupling_.mesh.faces())});
+    recorded_fields_ = moment.step;
+  }
+
+  /// After a failure: what we hold of the last committed window is kept, whatever has become of the
+  /// participants.
+  void record_last_committed() noexcept {
+    try {
+      if (recorded_fields_ != moment_.step) record_fields(moment_);
+      recorder_.close();
+      progress_.finish();
+    } catch (const std::exception& error) {
+      spdlog::error("could not record the last committed window: {}", error.what());
+    }
+  }
+
+  const Scene& scene_;
+  const SteadyClock::time_point begin_ = SteadyClock::now();
+  Recorder recorder_;
+  std::filesystem::path log_;
+  Session session_;
+  Coupling coupling_;
+  ProgressBar progress_;
+  CommittedState state_;
+  Summary summary_;
+  Moment moment_;
+  std::int64_t recorded_fields_ = -1;
+  std::int64_t recorded_particles_ = -1;
+  std::int64_t violations_ = 0;
+};
+
+}  // namespace
+
+ExitCode run_scene(const RunOptions& options) {
+  const Scene scene = resolve_scene(options);
+  const Mesh mesh = make_box(scene.fluid.mesh);
+  watch_for_interrupts();
+  Run run(scene, mesh, options.quiet);
+  const ExitCode code = run.run();
+  if (!options.quiet) fmt::print("{}", run.summary());
+  if (code == ExitCode::interrupted)
+    fmt::print(stderr, "interrupted; everything up to the last committed window is saved\n");
+  return code;
+}
+
+}  // namespace fluxpact

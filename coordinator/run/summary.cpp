@@ -1,0 +1,119 @@
+#include "coordinator/run/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/participant/field_names.hpp"
+
+namespace fluxpact {
+namespace {
+
+/// Cross-section of the domain that the weight rests on: volume over height along gravity [m²].
+double cross_section(const Mesh& mesh, const Vector3& up) {
+  double volume = 0;
+  for (const double cell : mesh.cell_volumes) volume += cell;
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const Vector3& point : mesh.points) {
+    low = std::min(low, point.dot(up));
+    high = std::max(high, point.dot(up));
+  }
+  return volume / (high - low);
+}
+
+}  // namespace
+
+void Summary::start(const Mesh& mesh, const Scene& scene, const CommittedState& state) {
+  mesh_ = &mesh;
+  window_ = scene.coupling.window;
+  second_half_ = windows(scene) / 2;
+  const Fields particles = fields_of(state.particles);
+  const double gravity = scene.scene.gravity.norm();
+  if (gravity > 0) {
+    const double displaced = scene.fluid.density * particles.number(field::particle_volume);
+    weight_per_area_ = gravity * (particles.number(field::particle_mass) - displaced) /
+                       cross_section(mesh, -scene.scene.gravity / gravity);
+  }
+}
+
+/// Flux-weighted pressure of the cells at the inflow less that at the outflow [Pa].
+double Summary::pressure_drop(const CommittedState& state) const {
+  const Fields fluid = fields_of(state.fluid);
+  const auto flux = fluid.scalars(field::face_flux, mesh_->faces());
+  const auto pressure = fluid.scalars(field::pressure, mesh_->cells());
+  double in = 0, in_pressure = 0, out = 0, out_pressure = 0;
+  for (int face = mesh_->internal_faces(); face < mesh_->faces(); ++face) {
+    const double amount = flux[face];
+    (amount < 0 ? in : out) += std::abs(amount);
+    (amount < 0 ? in_pressure : out_pressure) += std::abs(amount) * pressure[mesh_->owner[face]];
+  }
+  return in > 0 && out > 0 ? in_pressure / in - out_pressure / out : 0.0;
+}
+
+void Summary::add(const AuditRow& row, const CommittedState& state, double record_seconds) {
+  ++windows_;
+  mass_in_.add(row.mass.mass_in * window_);
+  mass_out_.add(row.mass.mass_out * window_);
+  largest_imbalance_ = std::max(largest_imbalance_, std::abs(row.mass.relative_imbalance));
+  largest_residual_ = std::max(largest_residual_, row.mass.max_cell_residual);
+  largest_handover_ =
+      std::max({largest_handover_, row.momentum.handover_error, row.momentum.impulse_error});
+  largest_correction_ =
+      std::max(largest_correction_, fields_of(state.fluid).number(field::closure_correction));
+  if (row.step > second_half_) {
+    pressure_drop_.add(pressure_drop(state));
+    ++pressure_windows_;
+  }
+  cfd_ += row.wall_cfd;
+  dem_ += row.wall_dem;
+  exchange_ += row.wall_exchange;
+  record_ += record_seconds;
+  last_ = row;
+}
+
+std::string Summary::text(const Scene& scene, double wall_seconds) const {
+  if (windows_ == 0) return "no window was committed\n";
+  fmt::memory_buffer text;
+  const auto line = [&]<class... Args>(fmt::format_string<Args...> pattern, Args&&... args) {
+    fmt::format_to(std::back_inserter(text), pattern, std::forward<Args>(args)...);
+    text.push_back('\n');
+  };
+  line("\n{}: {} windows, {:.6g} s simulated in {:.1f} s", scene.scene.name, windows_, last_.time,
+       wall_seconds);
+  line("  continuity            {}", scene.coupling.continuity == Continuity::conservative
+                                         ? "conservative"
+                                         : "LEGACY (does not conserve mass; for comparison only)");
+  line("  gas in / out          {:.9g} / {:.9g} kg", mass_in_.value(), mass_out_.value());
+  line("  largest imbalance     {:.2e} of the inflow, in any window", largest_imbalance_);
+  line("  largest cell residual {:.2e} of the cell's gas", largest_residual_);
+  line("  drift at the end      {:.2e} of the gas in the domain",
+       std::abs(last_.mass.cumulative_drift));
+  line("  momentum handover     {:.2e} relative, in any window", largest_handover_);
+  line("  flux closure          {:.2e} of the largest flux, at most", largest_correction_);
+  if (violations_ > 0)
+    line("  AUDIT VIOLATIONS      in {} of {} windows (limit {:g}; on_violation: warn)",
+         violations_, windows_, scene.coupling.audit.limit);
+  line("  particles             {} ({:.6g} kg)", last_.particle_count, last_.particle_mass);
+  if (pressure_windows_ > 0) {
+    const double drop = pressure_drop_.value() / static_cast<double>(pressure_windows_);
+    line(
+        "  pressure drop         {:.4g} Pa (mean of the second half); bed weight per area {:.4g} "
+        "Pa",
+        drop, weight_per_area_);
+  }
+  const double steps = cfd_ + dem_ + exchange_ + record_;
+  const auto share = [&](double part) { return 100 * part / std::max(steps, 1e-12); };
+  line("  wall time             total {:.2f} s, {:.3g} ms a window", wall_seconds,
+       1000 * steps / static_cast<double>(windows_));
+  line("    particles (DEM)     {:8.2f} s  {:5.1f} %", dem_, share(dem_));
+  line("    fluid (CFD)         {:8.2f} s  {:5.1f} %", cfd_, share(cfd_));
+  line("    exchange + audit    {:8.2f} s  {:5.1f} %", exchange_, share(exchange_));
+  line("    record              {:8.2f} s  {:5.1f} %", record_, share(record_));
+  line("  results               {} (audit.csv, results.h5, results.xdmf, run.log)",
+       scene.output.directory);
+  return fmt::to_string(text);
+}
+
+}  // namespace fluxpact

@@ -1,0 +1,39 @@
+// What a run came to, in words that a person understands.
+#pragma once
+
+#include <string>
+
+#include "coordinator/coupling/run_step.hpp"
+
+namespace fluxpact {
+
+class Summary {
+ public:
+  void start(const Mesh& mesh, const Scene& scene, const CommittedState& state);
+
+  /// One committed window; `record_seconds`: wall time of its record.
+  void add(const AuditRow& row, const CommittedState& state, double record_seconds);
+  void count_violation() { ++violations_; }
+
+  /// The closing text. `wall_seconds`: of the whole run.
+  std::string text(const Scene& scene, double wall_seconds) const;
+
+ private:
+  double pressure_drop(const CommittedState& state) const;
+
+  const Mesh* mesh_ = nullptr;
+  double window_ = 0;           ///< [s]
+  double weight_per_area_ = 0;  ///< [Pa] of the particles, less buoyancy
+  std::int64_t windows_ = 0;
+  std::int64_t second_half_ = 0;  ///< first window of it
+  std::int64_t violations_ = 0;
+  CompensatedSum mass_in_, mass_out_,
+      pressure_drop_;  ///< [kg], [kg], [Pa · windows of the second half]
+  std::int64_t pressure_windows_ = 0;
+  double largest_imbalance_ = 0, largest_residual_ = 0, largest_handover_ = 0,
+         largest_correction_ = 0;
+  double cfd_ = 0, dem_ = 0, exchange_ = 0, record_ = 0;  ///< [s]
+  AuditRow last_;
+};
+
+}  // namespace fluxpact

@@ -1,0 +1,94 @@
+#include "dem_server/backends/domain.hpp"
+
+#include <cmath>
+
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+/// The side of the box on which a boundary face lies: its outward axis, if its centre is on that
+/// plane.
+int side_of(const Domain& domain, const Mesh& mesh, int face) {
+  int axis = 0;
+  const Vector3& area = mesh.face_areas[face];
+  area.cwiseAbs().maxCoeff(&axis);
+  const int side = 2 * axis + (area[axis] > 0 ? 1 : 0);
+  // Round-off of a face centre is some 1e-16 of the coordinates; a cell is far thicker than 1e-9 of
+  // the box.
+  const double tolerance = 1e-9 * (domain.upper - domain.lower).norm();
+  if (std::abs(mesh.face_centres[face][axis] - domain.plane(side)) > tolerance ||
+      area.norm() - std::abs(area[axis]) > 1e-9 * area.norm()) {
+    return -1;
+  }
+  return side;
+}
+
+bool is_pressure(const Scene& scene, const std::string& patch) {
+  const auto boundary = scene.fluid.boundaries.find(patch);
+  return boundary != scene.fluid.boundaries.end() &&
+         boundary->second.type == BoundaryType::pressure;
+}
+
+}  // namespace
+
+const char* side_name(int side) {
+  constexpr std::array<const char*, 6> names{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  return names.at(side);
+}
+
+Domain particle_domain(const Scene& scene, const Mesh& mesh) {
+  Domain domain{mesh.points.front(), mesh.points.front(), {}};
+  for (const Vector3& point : mesh.points) {
+    domain.lower = domain.lower.cwiseMin(point);
+    domain.upper = domain.upper.cwiseMax(point);
+  }
+  std::array<bool, 6> only_pressure{};
+  only_pressure.fill(true);
+  for (const Patch& patch : mesh.patches) {
+    for (int face = patch.first; face < patch.first + patch.size; ++face) {
+      const int side = side_of(domain, mesh, face);
+      if (side < 0) {
+        const Vector3& at = mesh.face_centres[face];
+        throw ConfigError(
+            "particles.walls: patch {} has a face at ({:.6g}, {:.6g}, {:.6g}) m off the outer box "
+            "of the mesh; the particle walls are the sides of a box, so use a box mesh",
+            patch.name, at.x(), at.y(), at.z());
+      }
+      only_pressure[side] = only_pressure[side] && is_pressure(scene, patch.name);
+    }
+  }
+  for (int side = 0; side < 6; ++side) {
+    const bool open = only_pressure[side] || scene.particles.walls == WallSource::none;
+    domain.sides[side] = open ? SideKind::open : SideKind::wall;
+  }
+  for (const Vector3& translation : mesh.translations) {
+    int axis = 0;
+    translation.cwiseAbs().maxCoeff(&axis);
+    domain.sides[2 * axis] = domain.sides[2 * axis + 1] = SideKind::periodic;
+  }
+  return domain;
+}
+
+Vector3 wrapped(const Domain& domain, Vector3 position) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!domain.periodic(axis)) continue;
+    const double length = domain.length(axis);
+    position[axis] -= length * std::floor((position[axis] - domain.lower[axis]) / length);
+    // A position a rounding error below `lower` lands on `upper`, which is the same place.
+    if (position[axis] >= domain.upper[axis]) position[axis] = domain.lower[axis];
+  }
+  return position;
+}
+
+int lost_through(const Domain& domain, const Vector3& position, double radius) {
+  for (int side = 0; side < 6; ++side) {
+    if (domain.sides[side] == SideKind::periodic) continue;
+    const double outward = side % 2 == 0 ? -1.0 : 1.0;
+    const double beyond = outward * (position[side / 2] - domain.plane(side));
+    if (beyond > (domain.sides[side] == SideKind::wall ? radius : 0.0)) return side;
+  }
+  return -1;
+}
+
+}  // namespace fluxpact

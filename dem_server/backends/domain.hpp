@@ -1,0 +1,46 @@
+// Where particles may be: the outer box of the mesh, and what each of its sides means to a
+// particle. Used by every particle engine and by the insertion.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "proto/base/vector.hpp"
+#include "proto/mesh/mesh.hpp"
+#include "proto/scene/scene.hpp"
+
+namespace fluxpact {
+
+/// wall: a plane that particles touch. open: nothing is there, and a particle whose centre passes
+/// it is lost (NumericsError). periodic: a particle that leaves here comes back on the opposite
+/// side.
+enum class SideKind : std::uint8_t { wall, open, periodic };
+
+struct Domain {
+  Vector3 lower;                    ///< [m]
+  Vector3 upper;                    ///< [m]
+  std::array<SideKind, 6> sides{};  ///< in the order of Side: x_min, x_max, y_min, ...
+
+  bool periodic(int axis) const { return sides[2 * axis] == SideKind::periodic; }
+  double length(int axis) const { return upper[axis] - lower[axis]; }
+  /// Place of the plane of side 0 ... 5 along its axis [m].
+  double plane(int side) const { return side % 2 == 0 ? lower[side / 2] : upper[side / 2]; }
+};
+
+/// "x_min" ... for messages.
+const char* side_name(int side);
+
+/// The domain of the particles of a scene. Every side that is not periodic is a wall, so that no
+/// particle leaves through an inlet, except a side all of whose faces have a `pressure` boundary:
+/// that one is open. With `particles.walls: none` all of them are open. Throws ConfigError if a
+/// boundary face of the mesh lies off its outer box (only boxes are known here).
+Domain particle_domain(const Scene& scene, const Mesh& mesh);
+
+/// Position moved by whole periods into [lower, upper) along the periodic axes [m].
+Vector3 wrapped(const Domain& domain, Vector3 position);
+
+/// The side through which a sphere has left the domain, or -1: its centre beyond an open side, or
+/// all of it beyond a wall. Periodic sides hold everything.
+int lost_through(const Domain& domain, const Vector3& position, double radius);
+
+}  // namespace fluxpact

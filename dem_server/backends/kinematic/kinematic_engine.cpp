@@ -1,0 +1,53 @@
+#include "dem_server/backends/kinematic/kinematic_engine.hpp"
+
+#include "dem_server/backends/domain.hpp"
+#include "dem_server/backends/particle_rows.hpp"
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+class KinematicEngine final : public ParticleEngine {
+ public:
+  KinematicEngine(const Scene& scene, const Mesh& mesh, const ParticleState& initial)
+      : domain_(particle_domain(scene, mesh)),
+        presented_(checked_rows(initial, static_cast<int>(scene.particles.materials.size()))),
+        committed_position_(presented_.position) {}
+
+  const ParticleState& particles() const override { return presented_; }
+  bool mobile() const override { return false; }
+
+  void advance(double window, int, std::span<const Vector3>, const Progress& progress) override {
+    for (int row = 0; row < presented_.size(); ++row) {
+      const Vector3 position = committed_position_[row] + window * presented_.velocity[row];
+      const int side = lost_through(domain_, position, presented_.radius[row]);
+      if (side >= 0 || !position.allFinite()) refuse(row, position, side);
+      presented_.position[row] = wrapped(domain_, position);
+    }
+    if (progress) progress();
+  }
+  void commit() override { committed_position_ = presented_.position; }
+  void rollback() override { presented_.position = committed_position_; }
+
+ private:
+  [[noreturn]] void refuse(int row, const Vector3& at, int side) const {
+    throw NumericsError(
+        "particle {} of the kinematic engine would go to ({:.6g}, {:.6g}, {:.6g}) m and leave the "
+        "domain "
+        "through {}; lower its velocity, make that direction periodic, or enlarge the box",
+        presented_.id[row], at.x(), at.y(), at.z(), side < 0 ? "infinity" : side_name(side));
+  }
+
+  Domain domain_;
+  ParticleState presented_;
+  std::vector<Vector3> committed_position_;
+};
+
+}  // namespace
+
+std::unique_ptr<ParticleEngine> make_kinematic_engine(const Scene& scene, const Mesh& mesh,
+                                                      ParticleState initial) {
+  return std::make_unique<KinematicEngine>(scene, mesh, initial);
+}
+
+}  // namespace fluxpact

@@ -1,0 +1,43 @@
+// What every particle engine offers to the code between the phases: state by id, and one way forward.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "proto/base/vector.hpp"
+#include "proto/participant/participant.hpp"
+
+namespace fluxpact {
+
+/// Spheres, one row each, ascending by id.
+struct ParticleState {
+  std::vector<std::int64_t> id;
+  std::vector<Vector3> position;  ///< [m]
+  std::vector<Vector3> velocity;  ///< [m/s]
+  std::vector<Vector3> spin;      ///< [rad/s]
+  std::vector<double> radius;     ///< [m]
+  std::vector<double> density;    ///< [kg/m³]
+  std::vector<int> material;      ///< index into the engine's materials
+
+  int size() const { return static_cast<int>(id.size()); }
+};
+
+class ParticleEngine {
+ public:
+  virtual ~ParticleEngine() = default;
+
+  /// The newest state: the candidate after `advance`, else the committed one.
+  virtual const ParticleState& particles() const = 0;
+
+  /// False if forces do not move the particles (a frozen bed): they then count as infinitely heavy.
+  virtual bool mobile() const = 0;
+
+  /// Advance by `window` [s] in `sub_steps` equal steps under gravity, contact, and a force [N] on each particle
+  /// (row by row of `particles()`) that stays constant over the window.
+  virtual void advance(double window, int sub_steps, std::span<const Vector3> force, const Progress& progress) = 0;
+  virtual void commit() = 0;
+  virtual void rollback() = 0;
+};
+
+}  // namespace fluxpact

@@ -1,0 +1,68 @@
+#include "dem_server/backends/particle_rows.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+template <class T>
+void reorder(const std::vector<int>& order, std::vector<T>& values) {
+  std::vector<T> sorted;
+  sorted.reserve(order.size());
+  for (const int row : order) sorted.push_back(values[row]);
+  values = std::move(sorted);
+}
+
+void check_row(const ParticleState& particles, int row, int materials) {
+  const auto refuse = [&](const char* what, double value, const char* allowed) {
+    throw ConfigError("particle {}: {} is {}; it must be {}", particles.id[row], what, value,
+                      allowed);
+  };
+  if (row > 0 && particles.id[row] == particles.id[row - 1]) {
+    throw ConfigError("particle {}: the id stands twice; every particle needs its own",
+                      particles.id[row]);
+  }
+  const double radius = particles.radius[row];
+  const double density = particles.density[row];
+  const int material = particles.material[row];
+  if (!(radius > 0 && std::isfinite(radius))) refuse("radius", radius, "positive [m]");
+  if (!(density > 0 && std::isfinite(density))) refuse("density", density, "positive [kg/m³]");
+  if (material < 0 || material >= materials) {
+    refuse("material", material, "an index into particles.materials");
+  }
+  for (const Vector3& vector :
+       {particles.position[row], particles.velocity[row], particles.spin[row]}) {
+    if (!vector.allFinite()) refuse("position, velocity or spin", vector.sum(), "finite");
+  }
+}
+
+}  // namespace
+
+ParticleState checked_rows(const ParticleState& particles, int materials) {
+  const std::size_t count = particles.id.size();
+  if (particles.position.size() != count || particles.velocity.size() != count ||
+      particles.spin.size() != count || particles.radius.size() != count ||
+      particles.density.size() != count || particles.material.size() != count) {
+    throw ConfigError(
+        "the particle arrays differ in length; each needs one row for each of the {} ids", count);
+  }
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return particles.id[a] < particles.id[b]; });
+  ParticleState sorted = particles;
+  reorder(order, sorted.id);
+  reorder(order, sorted.position);
+  reorder(order, sorted.velocity);
+  reorder(order, sorted.spin);
+  reorder(order, sorted.radius);
+  reorder(order, sorted.density);
+  reorder(order, sorted.material);
+  for (int row = 0; row < sorted.size(); ++row) check_row(sorted, row, materials);
+  return sorted;
+}
+
+}  // namespace fluxpact

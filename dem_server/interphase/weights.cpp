@@ -1,0 +1,140 @@
+#include "dem_server/interphase/weights.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+namespace {
+
+// Overlaps below this share of R³ are the rounding of a ball that does not touch the cell.
+constexpr double touching = 1e-14;
+
+// First particle of a thread's equal share.
+int share_begin(int particles, int thread, int threads) {
+  return static_cast<int>(static_cast<std::int64_t>(particles) * thread / threads);
+}
+
+}  // namespace
+
+WeightsBuilder::WeightsBuilder(const Mesh& mesh, VoidageMap map, int threads)
+    : shapes_(mesh), locator_(mesh, shapes_), map_(map), threads_(threads) {
+  if (map == VoidageMap::prescribed) {
+    throw ConfigError("interphase.voidage: 'prescribed' maps no particles; use exact or centroid");
+  }
+  rows_.resize(static_cast<std::size_t>(threads));
+}
+
+// Each thread fills the rows of one run of particles; joined in the order of the particles, the
+// result does not know how many threads there were.
+void WeightsBuilder::build(const ParticleState& particles, std::int64_t step,
+                           ParticleCellWeights& weights) {
+  const int count = particles.size();
+  weights.row_offsets.resize(static_cast<std::size_t>(count) + 1);
+  weights.row_offsets[0] = 0;
+#pragma omp parallel for schedule(static) num_threads(threads_)
+  for (int thread = 0; thread < threads_; ++thread) {
+    Row& row = rows_[thread];
+    row.cells.clear();
+    row.weights.clear();
+    row.bad_particle = -1;
+    const int last = share_begin(count, thread + 1, threads_);
+    for (int p = share_begin(count, thread, threads_); p < last; ++p) {
+      if (!append_row({particles.position[p], particles.radius[p]}, row)) {
+        row.bad_particle = p;
+        break;
+      }
+      weights.row_offsets[p + 1] = static_cast<std::int64_t>(row.cells.size());
+    }
+  }
+  for (const Row& row : rows_) {
+    if (row.bad_particle >= 0) refuse(particles, row.bad_particle, step);
+  }
+  join_rows(particles, weights);
+  transpose(weights);
+}
+
+/// False if the particle cannot be mapped.
+bool WeightsBuilder::append_row(const Ball& ball, Row& row) const {
+  const int home = locator_.cell_of(ball.centre);
+  if (home < 0 || !(ball.radius < locator_.shortest_period())) return false;
+  if (map_ == VoidageMap::centroid) {
+    row.cells.push_back(home);
+    row.weights.push_back(1.0);
+    return true;
+  }
+  row.images.clear();
+  locator_.touching(ball, row.images);
+  const std::size_t first = row.cells.size();
+  const double smallest = touching * ball.radius * ball.radius * ball.radius;
+  double sum = 0;
+  for (const CellImage& image : row.images) {
+    const double volume = shapes_.overlap(image.cell, {image.point, ball.radius});
+    if (volume <= smallest) continue;
+    row.cells.push_back(image.cell);
+    row.weights.push_back(volume);
+    sum += volume;
+  }
+  if (!(sum > 0) || !std::isfinite(sum)) return false;
+  for (std::size_t k = first; k < row.weights.size(); ++k) row.weights[k] /= sum;
+  return true;
+}
+
+void WeightsBuilder::join_rows(const ParticleState& particles, ParticleCellWeights& weights) const {
+  std::size_t entries = 0;
+  for (const Row& row : rows_) entries += row.cells.size();
+  weights.row_cells.resize(entries);
+  weights.row_weights.resize(entries);
+  std::int64_t before = 0;
+  for (int thread = 0; thread < threads_; ++thread) {
+    const Row& row = rows_[thread];
+    std::ranges::copy(row.cells, weights.row_cells.begin() + before);
+    std::ranges::copy(row.weights, weights.row_weights.begin() + before);
+    const int last = share_begin(particles.size(), thread + 1, threads_);
+    for (int p = share_begin(particles.size(), thread, threads_); p < last; ++p) {
+      weights.row_offsets[p + 1] += before;
+    }
+    before += static_cast<std::int64_t>(row.cells.size());
+  }
+}
+
+void WeightsBuilder::transpose(ParticleCellWeights& weights) {
+  const auto cells = static_cast<std::size_t>(shapes_.cells());
+  weights.cell_offsets.assign(cells + 1, 0);
+  weights.cell_particles.resize(weights.row_cells.size());
+  weights.cell_weights.resize(weights.row_cells.size());
+  for (const int cell : weights.row_cells) ++weights.cell_offsets[cell + 1];
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    weights.cell_offsets[cell + 1] += weights.cell_offsets[cell];
+  }
+  next_.assign(weights.cell_offsets.begin(), weights.cell_offsets.end() - 1);
+  for (int p = 0; p < weights.particles(); ++p) {
+    for (auto k = weights.row_offsets[p]; k < weights.row_offsets[p + 1]; ++k) {
+      const auto place = next_[weights.row_cells[k]]++;
+      weights.cell_particles[place] = p;
+      weights.cell_weights[place] = weights.row_weights[k];
+    }
+  }
+}
+
+void WeightsBuilder::refuse(const ParticleState& particles, int particle, std::int64_t step) const {
+  const Vector3& x = particles.position[particle];
+  const double radius = particles.radius[particle];
+  if (locator_.cell_of(x) < 0) {
+    throw NumericsError(
+        "particle {} at ({}, {}, {}) m is outside the mesh at the end of step {}: it passed "
+        "through "
+        "a wall or an opening; use stiffer contacts or a smaller particles.time_step, or close the "
+        "side for particles",
+        particles.id[particle], x.x(), x.y(), x.z(), step);
+  }
+  throw NumericsError(
+      "particle {} at ({}, {}, {}) m with radius {} m cannot be mapped to cells in step {}: the "
+      "radius must be positive and below the shortest period of the domain, {} m",
+      particles.id[particle], x.x(), x.y(), x.z(), radius, step, locator_.shortest_period());
+}
+
+}  // namespace fluxpact

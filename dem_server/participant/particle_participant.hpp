@@ -1,0 +1,86 @@
+// The particle side of a session: an engine that moves particles, and all that is between the
+// phases.
+//
+// One window: forces from the last offer and the fluid's answer -> the engine's sub-steps ->
+// weights, voidage, mean velocity of the new positions -> the next offer of drag.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem_server/interphase/exchange.hpp"
+#include "proto/participant/participant.hpp"
+
+namespace fluxpact {
+
+/// Makes the engine with the scene's particles in it.
+using EngineFactory = std::function<std::unique_ptr<ParticleEngine>(const Scene&, const Mesh&)>;
+
+class ParticleParticipant : public Participant {
+ public:
+  ParticleParticipant(std::string backend, EngineFactory make_engine);
+
+  Identity identity() const override;
+
+  /// Throws ConfigError if the scene maps no particles (interphase.voidage: prescribed), and what
+  /// the engine's factory throws.
+  void configure(const Scene& scene, const Mesh& mesh) override;
+
+  /// `in` may hold the fluid's initial velocity; without it the drag coefficient is that at u = 0.
+  void start(const Fields& in, Fields& out) override;
+
+  /// Needs velocity and pressure_gradient of the committed fluid state, one row a cell. Throws
+  /// ProtocolError if they are missing or the last candidate was neither committed nor rolled back,
+  /// NumericsError if a particle leaves the mesh, a cell is over-full, a force is not finite.
+  void advance(const Window& window, const Fields& in, Fields& out,
+               const Progress& progress) override;
+  void commit() override;
+  void rollback() override;
+
+  /// id, position, velocity, spin, radius, density. Throws ProtocolError while a candidate is
+  /// pending: the engine then shows that one.
+  void snapshot(Fields& out) override;
+
+ private:
+  void map_particles(std::int64_t step);
+  void publish(double wall_seconds, Fields& out);
+
+  std::string backend_;
+  EngineFactory make_engine_;
+  std::unique_ptr<ParticleEngine> engine_;
+  std::optional<WeightsBuilder> builder_;
+  ExchangeSettings settings_;
+  int sub_steps_ = 1;
+  double first_window_ = 0;  ///< [s]
+  std::vector<double> cell_volumes_;
+  std::vector<Vector3> cell_centres_;
+
+  Offer committed_;
+  Offer candidate_;
+  bool pending_ = false;  ///< a candidate waits for commit or rollback
+
+  // Of the newest advance. Nothing here is read by the next one.
+  ParticleBulk bulk_;
+  WindowForces forces_;
+  OfferMaker offer_maker_;
+  std::vector<Vector3> velocity_before_;
+  std::vector<double> voidage_;
+  std::vector<double> drag_coefficient_;
+  std::vector<Vector3> drag_source_;
+  std::vector<Vector3> impulse_given_;
+  std::vector<Vector3> particle_velocity_;
+  std::vector<double> id_;
+};
+
+/// The names of the fields that every particle side gives and needs.
+Identity particle_identity(const std::string& backend);
+
+/// Takes part with what the scene asks for when it is configured: particles moved by the engine
+/// `backend` (native | kinematic), or prescribed solids. Throws ConfigError for another name; its
+/// `configure` does if the scene asks for another engine than the program was started with.
+std::unique_ptr<Participant> make_particle_participant(const std::string& backend);
+
+}  // namespace fluxpact

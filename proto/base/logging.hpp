@@ -1,0 +1,21 @@
+// One line per event, with the time and the process that said it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fluxpact {
+
+/// What --log-level takes.
+std::vector<std::string> log_levels();
+
+/// Log to standard error (a server: the coordinator collects it in run.log).
+void log_to_stderr(const std::string& process, const std::string& level);
+
+/// Log to a file that is appended to, and warnings and errors to standard error, too. Throws
+/// SystemError.
+void log_to_file(const std::string& process, const std::string& level,
+                 const std::filesystem::path& path);
+
+}  // namespace fluxpact

@@ -1,0 +1,38 @@
+// The fields that cross between the processes: names, shapes, units, and who gives them.
+#pragma once
+
+namespace fluxpact::field {
+
+// From the particle side, one row a cell.
+inline constexpr auto voidage = "voidage";  ///< ε^{n+1} [-]
+inline constexpr auto drag_coefficient =
+    "drag_coefficient";  ///< B = Σ w ζ/(1+b) [kg/s]: force on the fluid is S − B u
+inline constexpr auto drag_source = "drag_source";      ///< S = Σ w ζ/(1+b) v* [N], vector
+inline constexpr auto impulse_given = "impulse_given";  ///< Σ w I: impulse that the fluid gave the
+                                                        ///< particles in this window [N s], vector
+inline constexpr auto particle_velocity =
+    "particle_velocity";  ///< volume-weighted mean velocity of the particles [m/s], vector
+
+// From the particle side, numbers.
+inline constexpr auto particle_volume = "particle_volume";  ///< Σ V_p inside the domain [m³]
+inline constexpr auto particle_count = "particle_count";
+inline constexpr auto particle_mass = "particle_mass";  ///< [kg]
+
+// From the fluid side. One row a face, or a cell.
+inline constexpr auto face_flux =
+    "face_flux";  ///< Φ: superficial mass flux of the window [kg/s], out of the owner
+inline constexpr auto velocity = "velocity";  ///< u^{n+1}, interstitial [m/s], vector
+inline constexpr auto pressure = "pressure";  ///< p_d = p − ρ g·x [Pa]
+inline constexpr auto pressure_gradient = "pressure_gradient";  ///< ∇p_d [Pa/m], vector
+inline constexpr auto impulse_taken =
+    "impulse_taken";  ///< Δt (S − B u^{n+1}): impulse that drag gave the fluid [N s], vector
+
+// From the fluid side, numbers.
+inline constexpr auto solver_iterations = "solver_iterations";
+inline constexpr auto closure_correction =
+    "closure_correction";  ///< largest flux change by the closure over the largest flux [-]
+
+// From both.
+inline constexpr auto wall_seconds = "wall_seconds";  ///< time spent in advance [s]
+
+}  // namespace fluxpact::field

@@ -1,0 +1,23 @@
+// The command line that all servers share.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "proto/participant/participant.hpp"
+
+namespace fluxpact {
+
+struct ServerProgram {
+  std::string name;                   ///< of the program
+  std::string description;            ///< one line for --help
+  std::vector<std::string> backends;  ///< the first is the default
+  std::function<std::unique_ptr<Participant>(const std::string& backend)> make;
+};
+
+/// Parse, connect, serve until bye. Returns the exit code of the program.
+int server_main(int argc, char** argv, const ServerProgram& program);
+
+}  // namespace fluxpact

@@ -1,0 +1,13 @@
+// What must fit together in a scene, beyond each key for itself. Needs neither mesh nor particles.
+#pragma once
+
+#include "proto/scene/findings.hpp"
+#include "proto/scene/scene.hpp"
+
+namespace fluxpact {
+
+/// Adds a finding for each contradiction. Values for which something was found already are left
+/// alone.
+void check_scene(const Scene& scene, Findings& findings);
+
+}  // namespace fluxpact

@@ -1,0 +1,152 @@
+// The words that stand for the choices of a scene: one table for each enum, used to read, to write,
+// for the reference and for messages anywhere.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "proto/scene/scene.hpp"
+
+namespace fluxpact {
+
+template <class Enum>
+struct Named {
+  Enum value{};
+  std::string_view name;
+};
+
+/// All values of an enum of the scene in the order of the documentation; specialised for each
+/// below.
+template <class Enum>
+inline constexpr int enum_names = 0;
+
+template <>
+inline constexpr auto enum_names<Continuity> = std::to_array<Named<Continuity>>({
+    {Continuity::conservative, "conservative"},
+    {Continuity::legacy, "legacy"},
+});
+template <>
+inline constexpr auto enum_names<OnViolation> = std::to_array<Named<OnViolation>>({
+    {OnViolation::stop, "stop"},
+    {OnViolation::warn, "warn"},
+});
+template <>
+inline constexpr auto enum_names<CouplingScheme> = std::to_array<Named<CouplingScheme>>({
+    {CouplingScheme::serial, "serial"},
+});
+template <>
+inline constexpr auto enum_names<LaunchMode> = std::to_array<Named<LaunchMode>>({
+    {LaunchMode::local, "local"},
+    {LaunchMode::external, "external"},
+});
+template <>
+inline constexpr auto enum_names<Security> = std::to_array<Named<Security>>({
+    {Security::none, "none"},
+});
+template <>
+inline constexpr auto enum_names<Side> = std::to_array<Named<Side>>({
+    {Side::x_min, "x_min"},
+    {Side::x_max, "x_max"},
+    {Side::y_min, "y_min"},
+    {Side::y_max, "y_max"},
+    {Side::z_min, "z_min"},
+    {Side::z_max, "z_max"},
+});
+template <>
+inline constexpr auto enum_names<Axis> = std::to_array<Named<Axis>>({
+    {Axis::x, "x"},
+    {Axis::y, "y"},
+    {Axis::z, "z"},
+});
+template <>
+inline constexpr auto enum_names<BoundaryType> = std::to_array<Named<BoundaryType>>({
+    {BoundaryType::velocity, "velocity"},
+    {BoundaryType::mass_flow, "mass_flow"},
+    {BoundaryType::pressure, "pressure"},
+    {BoundaryType::wall, "wall"},
+});
+template <>
+inline constexpr auto enum_names<Slip> = std::to_array<Named<Slip>>({
+    {Slip::none, "none"},
+    {Slip::free, "free"},
+});
+template <>
+inline constexpr auto enum_names<Convection> = std::to_array<Named<Convection>>({
+    {Convection::upwind, "upwind"},
+    {Convection::linear_upwind, "linear_upwind"},
+    {Convection::limited, "limited"},
+});
+template <>
+inline constexpr auto enum_names<FluidBackend> = std::to_array<Named<FluidBackend>>({
+    {FluidBackend::native, "native"},
+});
+template <>
+inline constexpr auto enum_names<LinearSolverChoice> = std::to_array<Named<LinearSolverChoice>>({
+    {LinearSolverChoice::automatic, "automatic"},
+    {LinearSolverChoice::multigrid, "multigrid"},
+    {LinearSolverChoice::conjugate_gradient, "conjugate_gradient"},
+});
+template <>
+inline constexpr auto enum_names<ParticleBackend> = std::to_array<Named<ParticleBackend>>({
+    {ParticleBackend::native, "native"},
+    {ParticleBackend::kinematic, "kinematic"},
+});
+template <>
+inline constexpr auto enum_names<ContactLaw> = std::to_array<Named<ContactLaw>>({
+    {ContactLaw::linear, "linear"},
+});
+template <>
+inline constexpr auto enum_names<InsertionType> = std::to_array<Named<InsertionType>>({
+    {InsertionType::packing, "packing"},
+    {InsertionType::lattice, "lattice"},
+    {InsertionType::file, "file"},
+});
+template <>
+inline constexpr auto enum_names<WallSource> = std::to_array<Named<WallSource>>({
+    {WallSource::from_mesh, "from_mesh"},
+    {WallSource::none, "none"},
+});
+template <>
+inline constexpr auto enum_names<VoidageMap> = std::to_array<Named<VoidageMap>>({
+    {VoidageMap::exact, "exact"},
+    {VoidageMap::centroid, "centroid"},
+    {VoidageMap::prescribed, "prescribed"},
+});
+template <>
+inline constexpr auto enum_names<DragLaw> = std::to_array<Named<DragLaw>>({
+    {DragLaw::none, "none"},
+    {DragLaw::gidaspow, "gidaspow"},
+    {DragLaw::ergun, "ergun"},
+    {DragLaw::wen_yu, "wen_yu"},
+    {DragLaw::stokes, "stokes"},
+});
+template <>
+inline constexpr auto enum_names<InterphaseForce> = std::to_array<Named<InterphaseForce>>({
+    {InterphaseForce::pressure_gradient, "pressure_gradient"},
+});
+
+/// The word for a value.
+template <class Enum>
+std::string_view name_of(Enum value) {
+  for (const auto& entry : enum_names<Enum>) {
+    if (entry.value == value) {
+      return entry.name;
+    }
+  }
+  throw std::logic_error("a value of an enum of the scene has no name in proto/scene/names.hpp");
+}
+
+/// The value for a word; nothing if there is none.
+template <class Enum>
+std::optional<Enum> value_of(std::string_view name) {
+  for (const auto& entry : enum_names<Enum>) {
+    if (entry.name == name) {
+      return entry.value;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace fluxpact

@@ -1,0 +1,32 @@
+#include "proto/scene/scene.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace fluxpact {
+namespace {
+
+/// The quotient of two decimal numbers in doubles: each is off by half an ulp, the division by
+/// another half. Four times that bound still tells every quotient apart that a person would call
+/// different.
+bool is_whole(double quotient) {
+  constexpr double slack = 8 * std::numeric_limits<double>::epsilon();
+  return std::abs(quotient - std::round(quotient)) <= slack * quotient;
+}
+
+}  // namespace
+
+int sub_steps(const Scene& scene) {
+  if (scene.particles.time_step <= 0) {
+    return 1;
+  }
+  const double quotient = scene.coupling.window / scene.particles.time_step;
+  return static_cast<int>(is_whole(quotient) ? std::round(quotient) : std::ceil(quotient));
+}
+
+int windows(const Scene& scene) {
+  const double quotient = scene.scene.end_time / scene.coupling.window;
+  return is_whole(quotient) ? static_cast<int>(std::round(quotient)) : 0;
+}
+
+}  // namespace fluxpact

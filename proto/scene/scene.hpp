@@ -1,0 +1,226 @@
+// The scene as plain data: what a user asks for, defaults filled in. SI units throughout.
+//
+// The member's initial value IS the documented default. Keys, units, ranges and texts stand once,
+// in schema.hpp; every process reads the same resolved scene through it.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/base/vector.hpp"
+
+namespace fluxpact {
+
+// ---- scene, coupling, output, launch ----
+
+struct SceneSettings {
+  std::string name;
+  Vector3 gravity{0, 0, -9.81};  ///< [m/s²]
+  double end_time = 0;           ///< [s]
+};
+
+enum class Continuity { conservative, legacy };
+enum class OnViolation { stop, warn };
+enum class CouplingScheme { serial };
+
+struct AuditSettings {
+  double limit = 1e-10;  ///< largest accepted relative imbalance and cell residual [-]
+  OnViolation on_violation = OnViolation::stop;
+};
+
+struct CouplingSettings {
+  double window = 0;  ///< [s] one fluid step and one exchange
+  CouplingScheme scheme = CouplingScheme::serial;
+  Continuity continuity = Continuity::conservative;
+  AuditSettings audit;
+};
+
+struct EverySettings {
+  double every = 0;  ///< [s] between two records; 0: only start and end
+};
+
+struct OutputSettings {
+  std::string directory;  ///< default: runs/<scene.name>
+  EverySettings fields;
+  EverySettings particles;
+};
+
+enum class LaunchMode { local, external };
+enum class Security { none };
+
+struct LaunchSettings {
+  LaunchMode mode = LaunchMode::local;
+  std::string listen;                ///< endpoint; default: a private ipc:// socket
+  std::optional<Security> security;  ///< must be written out (none) to listen off loopback
+  double deadline = 60;              ///< [s] silence of a participant after which it counts as lost
+  double start_deadline = 30;        ///< [s] for all participants to say hello
+};
+
+// ---- fluid ----
+
+enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
+
+/// A range in each axis; what is not given is unbounded.
+struct Region {
+  std::optional<std::array<double, 2>> x, y, z;  ///< [m]
+};
+
+struct BoxSettings {
+  Vector3 lower{0, 0, 0};  ///< [m]
+  Vector3 upper{0, 0, 0};  ///< [m]
+  std::array<int, 3> cells{0, 0, 0};
+};
+
+struct PatchSettings {
+  Side side = Side::x_min;
+  Region within;
+};
+
+enum class Axis { x, y, z };
+
+struct MeshSettings {
+  BoxSettings box;
+  std::vector<Axis> periodic;
+  std::vector<std::pair<std::string, PatchSettings>>
+      patches;  ///< in the order of the file: the first that holds a face gets it
+};
+
+enum class BoundaryType { velocity, mass_flow, pressure, wall };
+enum class Slip { none, free };
+
+struct BoundarySettings {
+  BoundaryType type = BoundaryType::wall;
+  std::optional<Vector3> superficial;  ///< [m/s] type velocity: volume flux per area of the patch
+  std::optional<Vector3>
+      interstitial;  ///< [m/s] type velocity: multiplied by the voidage of the adjacent cell
+  std::optional<double> rate;  ///< [kg/s] type mass_flow: into the domain, over the whole patch
+  double value = 0;            ///< [Pa] type pressure
+  Slip slip = Slip::none;      ///< type wall
+};
+
+struct InitialSettings {
+  Vector3 superficial{0, 0, 0};  ///< [m/s]
+};
+
+enum class Convection { upwind, linear_upwind, limited };
+enum class FluidBackend { native };
+enum class LinearSolverChoice { automatic, multigrid, conjugate_gradient };
+
+/// How far the lagged mass source of the legacy continuity is converged within a window.
+struct LegacySettings {
+  double tolerance =
+      1e-4;  ///< largest change of a face flux between two iterations over the largest flux [-]
+  int iterations = 20;
+};
+
+struct FluidNumerics {
+  Convection convection = Convection::limited;
+  int correctors = 2;
+  double pressure_tolerance = 1e-6;  ///< relative residual of the pressure equation [-]
+  LinearSolverChoice solver = LinearSolverChoice::automatic;
+  LegacySettings legacy;
+};
+
+struct FluidSettings {
+  FluidBackend backend = FluidBackend::native;
+  double density = 0;    ///< [kg/m³]
+  double viscosity = 0;  ///< [Pa s]
+  MeshSettings mesh;
+  std::map<std::string, BoundarySettings> boundaries;
+  InitialSettings initial;
+  FluidNumerics numerics;
+};
+
+// ---- particles ----
+
+enum class ParticleBackend { native, kinematic };
+enum class ContactLaw { linear };
+
+struct MaterialSettings {
+  double density = 0;  ///< [kg/m³]
+};
+
+struct PairSettings {
+  std::array<std::string, 2> between;          ///< two materials, or a material and `walls`
+  double normal_stiffness = 0;                 ///< [N/m]
+  std::optional<double> tangential_stiffness;  ///< [N/m]; default 2/7 of the normal one
+  double restitution = 0.9;                    ///< [-]
+  double friction = 0.3;                       ///< [-]
+};
+
+struct ContactSettings {
+  ContactLaw law = ContactLaw::linear;
+  std::vector<PairSettings> pairs;
+};
+
+enum class InsertionType { packing, lattice, file };
+
+struct InsertionSettings {
+  InsertionType type = InsertionType::packing;
+  std::string material;
+  double diameter = 0;        ///< [m] (file: a column of the file wins)
+  int count = 0;              ///< packing: particles
+  Region within;              ///< packing, lattice; default: the whole domain
+  int seed = 1;               ///< packing
+  double spacing = 0;         ///< [m] lattice: distance of neighbours; default 1.001 diameters
+  Vector3 velocity{0, 0, 0};  ///< [m/s] packing, lattice
+  std::string path;           ///< file: CSV with a header line x,y,z[,vx,vy,vz][,diameter]
+};
+
+enum class WallSource { from_mesh, none };
+
+struct ParticleNumerics {
+  int threads = 0;  ///< 0: all cores of the machine
+};
+
+struct ParticleSettings {
+  ParticleBackend backend = ParticleBackend::native;
+  double time_step = 0;  ///< [s] upper bound: the window is cut into equal sub-steps
+  std::map<std::string, MaterialSettings> materials;
+  ContactSettings contact;
+  WallSource walls = WallSource::from_mesh;
+  std::vector<InsertionSettings> insertion;
+  ParticleNumerics numerics;
+};
+
+// ---- interphase ----
+
+enum class VoidageMap { exact, centroid, prescribed };
+enum class DragLaw { none, gidaspow, ergun, wen_yu, stokes };
+enum class InterphaseForce { pressure_gradient };
+
+/// A solid phase given by a formula, at rest, without particles: for verification.
+struct PrescribedSettings {
+  std::string voidage;  ///< expression in x, y, z [m] (cell centre) and t [s]
+  double diameter = 0;  ///< [m] of the spheres that the drag law sees
+};
+
+struct InterphaseSettings {
+  VoidageMap voidage = VoidageMap::exact;
+  DragLaw drag = DragLaw::gidaspow;
+  std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
+  std::optional<PrescribedSettings> prescribed;
+};
+
+struct Scene {
+  int version = 1;
+  SceneSettings scene;
+  CouplingSettings coupling;
+  FluidSettings fluid;
+  ParticleSettings particles;
+  InterphaseSettings interphase;
+  OutputSettings output;
+  LaunchSettings launch;
+};
+
+/// Sub-steps of the particles in one window: the fewest equal steps not longer than
+/// particles.time_step.
+int sub_steps(const Scene& scene);
+
+/// Windows from time 0 to end_time.
+int windows(const Scene& scene);
+
+}  // namespace fluxpact

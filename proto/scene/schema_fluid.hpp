@@ -1,0 +1,164 @@
+// The keys of the fluid, its mesh and boundaries: a part of the table of schema.hpp.
+#pragma once
+
+#include "proto/scene/key.hpp"
+#include "proto/scene/scene.hpp"
+
+namespace fluxpact {
+
+template <class Visit>
+void describe(Visit& visit, Region& region) {
+  const auto axis = [&](std::string_view name, std::string_view meaning, auto& member) {
+    visit({.name = name,
+           .dimension = Dimension::length,
+           .otherwise = "unbounded",
+           .meaning = meaning},
+          member);
+  };
+  axis("x", "Range in x.", region.x);
+  axis("y", "Range in y.", region.y);
+  axis("z", "Range in z.", region.z);
+}
+
+template <class Visit>
+void describe(Visit& visit, BoxSettings& box) {
+  visit({.name = "lower", .dimension = Dimension::length, .meaning = "Corner of the box."},
+        box.lower);
+  visit({.name = "upper",
+         .dimension = Dimension::length,
+         .required = true,
+         .meaning = "Opposite corner, beyond `lower`."},
+        box.upper);
+  visit({.name = "cells",
+         .range = {.lower = 1},
+         .required = true,
+         .meaning = "Number of cells in x, y and z."},
+        box.cells);
+}
+
+template <class Visit>
+void describe(Visit& visit, PatchSettings& patch) {
+  visit({.name = "side", .required = true, .meaning = "Side of the box."}, patch.side);
+  visit({.name = "within",
+         .otherwise = "the whole side",
+         .meaning = "Only the faces whose centre lies in this range."},
+        patch.within);
+}
+
+template <class Visit>
+void describe(Visit& visit, MeshSettings& mesh) {
+  visit({.name = "box", .required = true, .meaning = "A box of equal hexahedra."}, mesh.box);
+  visit({.name = "periodic", .meaning = "Axes whose two sides are joined."}, mesh.periodic);
+  visit({.name = "patches",
+         .meaning = "Named parts of the boundary. A face belongs to the first patch that holds its "
+                    "centre; what is left is "
+                    "the patch `walls`."},
+        mesh.patches);
+}
+
+template <class Visit>
+void describe(Visit& visit, BoundarySettings& boundary) {
+  visit({.name = "type", .required = true, .meaning = "What is known on the patch."},
+        boundary.type);
+  constexpr std::string_view exactly_one = "exactly one of `superficial` and `interstitial`";
+  const bool velocity = boundary.type == BoundaryType::velocity;
+  visit({.name = "superficial",
+         .dimension = Dimension::velocity,
+         .otherwise = exactly_one,
+         .applies = velocity,
+         .only_with = "type: velocity",
+         .meaning = "Volume flux per area of the patch."},
+        boundary.superficial);
+  visit({.name = "interstitial",
+         .dimension = Dimension::velocity,
+         .otherwise = exactly_one,
+         .applies = velocity,
+         .only_with = "type: velocity",
+         .meaning = "Velocity between the particles: times the voidage of the adjacent cell it is "
+                    "the volume flux."},
+        boundary.interstitial);
+  visit({.name = "rate",
+         .dimension = Dimension::mass_flow,
+         .required = true,
+         .applies = boundary.type == BoundaryType::mass_flow,
+         .only_with = "type: mass_flow",
+         .meaning = "Mass flow into the domain over the whole patch; negative: out of it."},
+        boundary.rate);
+  visit({.name = "value",
+         .dimension = Dimension::pressure,
+         .applies = boundary.type == BoundaryType::pressure,
+         .only_with = "type: pressure",
+         .meaning = "Pressure less the hydrostatic one, p - rho g.x."},
+        boundary.value);
+  visit({.name = "slip",
+         .applies = boundary.type == BoundaryType::wall,
+         .only_with = "type: wall",
+         .meaning = "`none`: the fluid sticks to the wall; `free`: no friction."},
+        boundary.slip);
+}
+
+template <class Visit>
+void describe(Visit& visit, InitialSettings& initial) {
+  visit({.name = "superficial",
+         .dimension = Dimension::velocity,
+         .meaning = "Superficial velocity at time 0 in every cell."},
+        initial.superficial);
+}
+
+template <class Visit>
+void describe(Visit& visit, LegacySettings& legacy) {
+  visit({.name = "tolerance",
+         .range = {.lower = 0, .upper = 1, .without_lower = true, .without_upper = true},
+         .meaning = "Largest change of a face flux between two iterations over the largest flux."},
+        legacy.tolerance);
+  visit({.name = "iterations", .range = {.lower = 1}, .meaning = "Most iterations in a window."},
+        legacy.iterations);
+}
+
+template <class Visit>
+void describe(Visit& visit, FluidNumerics& numerics) {
+  visit({.name = "convection",
+         .meaning =
+             "How momentum is carried through faces; `limited`: second order with a TVD limiter."},
+        numerics.convection);
+  visit({.name = "correctors",
+         .range = {.lower = 1, .upper = 100},
+         .meaning = "Pressure corrections in a window."},
+        numerics.correctors);
+  visit({.name = "pressure_tolerance",
+         .range = {.lower = 0, .upper = 1, .without_lower = true, .without_upper = true},
+         .meaning = "Relative residual of the pressure equation. Mass is conserved at any value; "
+                    "velocity is not exact."},
+        numerics.pressure_tolerance);
+  visit({.name = "solver",
+         .meaning = "Linear solver of the pressure equation; `automatic` chooses by the mesh."},
+        numerics.solver);
+  visit({.name = "legacy", .meaning = "Convergence of the mass source with `continuity: legacy`."},
+        numerics.legacy);
+}
+
+template <class Visit>
+void describe(Visit& visit, FluidSettings& fluid) {
+  visit({.name = "backend", .meaning = "The program that solves the fluid."}, fluid.backend);
+  visit({.name = "density",
+         .dimension = Dimension::density,
+         .range = positive,
+         .required = true,
+         .meaning = "Of the fluid."},
+        fluid.density);
+  visit({.name = "viscosity",
+         .dimension = Dimension::viscosity,
+         .range = positive,
+         .required = true,
+         .meaning = "Dynamic viscosity."},
+        fluid.viscosity);
+  visit({.name = "mesh", .required = true, .meaning = "The cells, shared by all participants."},
+        fluid.mesh);
+  visit({.name = "boundaries",
+         .meaning = "One condition for each patch of the mesh, `walls` included."},
+        fluid.boundaries);
+  visit({.name = "initial", .meaning = "The fluid at time 0."}, fluid.initial);
+  visit({.name = "numerics", .meaning = "How the fluid is solved."}, fluid.numerics);
+}
+
+}  // namespace fluxpact

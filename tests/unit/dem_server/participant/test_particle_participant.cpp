@@ -1,0 +1,394 @@
+#include "dem_server/participant/particle_participant.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "free_flight.hpp"
+#include "proto/base/errors.hpp"
+#include "proto/mesh/box.hpp"
+#include "proto/participant/field_names.hpp"
+
+namespace fluxpact {
+namespace {
+
+const Progress quiet = [] {};
+
+/// A scene of one box and a fluid whose fields the test writes itself.
+struct Bench {
+  explicit Bench(std::array<int, 3> cells = {3, 3, 3}) {
+    scene.scene.gravity = {0, 0, -9.81};
+    scene.coupling.window = 1e-3;
+    scene.particles.time_step = 2.5e-4;
+    scene.particles.numerics.threads = 2;
+    scene.fluid.density = 1.2;
+    scene.fluid.viscosity = 1.8e-5;
+    scene.fluid.mesh.box = {{0, 0, 0}, {0.3, 0.3, 0.3}, cells};
+    scene.fluid.mesh.periodic = {Axis::x, Axis::y, Axis::z};
+    scene.interphase.drag = DragLaw::stokes;
+    mesh = make_box(scene.fluid.mesh);
+    velocity.assign(mesh.cell_volumes.size(), Vector3::Zero());
+    gradient.assign(mesh.cell_volumes.size(), Vector3::Zero());
+  }
+
+  std::unique_ptr<ParticleParticipant> take_part(const ParticleState& initial, bool held = false) {
+    auto side = std::make_unique<ParticleParticipant>("test", [&, held, initial](const Scene& s,
+                                                                                 const Mesh&) {
+      return std::make_unique<FreeFlight>(initial, s.scene.gravity, Vector3::Constant(0.3), held);
+    });
+    side->configure(scene, mesh);
+    return side;
+  }
+
+  Fields fluid() const {
+    Fields in;
+    in.add(field::velocity, velocity);
+    in.add(field::pressure_gradient, gradient);
+    return in;
+  }
+  Window window(std::int64_t step) const {
+    const double length = scene.coupling.window;
+    return {step, static_cast<double>(step - 1) * length, length};
+  }
+
+  Scene scene;
+  Mesh mesh;
+  std::vector<Vector3> velocity;
+  std::vector<Vector3> gradient;
+};
+
+ParticleState cloud() {
+  std::mt19937_64 random(21);
+  std::uniform_real_distribution<double> place(0, 0.3);
+  ParticleState particles;
+  for (int i = 0; i < 60; ++i) {
+    particles.id.push_back(i + 1);
+    particles.position.emplace_back(place(random), place(random), place(random));
+    particles.velocity.emplace_back(place(random), place(random), place(random));
+    particles.spin.emplace_back(Vector3::Zero());
+    particles.radius.push_back(0.004 + 0.02 * place(random));
+    particles.density.push_back(100);
+    particles.material.push_back(0);
+  }
+  return particles;
+}
+
+std::map<std::string, std::vector<double>> copy(const Fields& fields) {
+  std::map<std::string, std::vector<double>> all;
+  for (const FieldView& view : fields.views()) {
+    all[view.name] = {view.values.begin(), view.values.end()};
+  }
+  for (const auto& [name, value] : fields.numbers()) {
+    if (name != field::wall_seconds) all[name] = {value};
+  }
+  return all;
+}
+
+Vector3 sum(std::span<const Vector3> values) {
+  Vector3 total = Vector3::Zero();
+  for (const Vector3& value : values) total += value;
+  return total;
+}
+
+Vector3 momentum(ParticleParticipant& side) {
+  Fields state;
+  side.snapshot(state);
+  const int count = static_cast<int>(state.views().front().values.size());
+  const auto v = state.vectors("velocity", count);
+  const auto radius = state.scalars("radius", count);
+  const auto density = state.scalars("density", count);
+  Vector3 total = Vector3::Zero();
+  for (int i = 0; i < count; ++i) total += density[i] * ball_volume(radius[i]) * v[i];
+  return total;
+}
+
+TEST(ParticleParticipant, gives_all_fields_it_promises_and_needs_those_it_names) {
+  Bench bench;
+  const auto side = bench.take_part(cloud());
+  Fields out;
+  side->start({}, out);
+  const auto given = copy(out);
+  EXPECT_EQ(side->identity().role, Role::particles);
+  for (const std::string& name : side->identity().gives) {
+    EXPECT_TRUE(given.contains(name) || name == field::wall_seconds) << name;
+  }
+  EXPECT_EQ(out.number(field::particle_count), 60);
+  EXPECT_NEAR(out.number(field::particle_mass), 100 * out.number(field::particle_volume), 1e-14);
+  Fields nothing;
+  EXPECT_THROW(side->advance(bench.window(1), nothing, out, quiet), ProtocolError);
+}
+
+TEST(ParticleParticipant, starts_with_the_drag_of_the_velocity_it_is_given) {
+  Bench bench;
+  bench.scene.interphase.drag = DragLaw::ergun;
+  std::ranges::fill(bench.velocity, Vector3(0, 0, 2));
+  Fields still;
+  Fields blown;
+  const auto side = bench.take_part(cloud());
+  side->start({}, still);
+  const auto first = copy(still);
+  side->start(bench.fluid(), blown);
+  const auto second = copy(blown);
+  EXPECT_EQ(first.at(field::voidage), second.at(field::voidage));
+  EXPECT_NE(first.at(field::drag_coefficient), second.at(field::drag_coefficient));
+}
+
+TEST(ParticleParticipant, settles_to_the_exact_terminal_slip_at_any_window) {
+  const double radius = 1e-3;
+  const double density = 500;
+  const double reduced = 9.81 * (1 - 1.2 / density);             // gravity less buoyancy
+  for (const double ratio : {1e-2, 0.1, 1.0, 10.0, 1e2, 1e3}) {  // Δt/τ
+    Bench bench;
+    const double tau = bench.scene.coupling.window / ratio;
+    // Stokes: τ = m/(3 π μ d) = ρ_p d²/(18 μ).
+    bench.scene.fluid.viscosity = density * 4 * radius * radius / (18 * tau);
+    std::ranges::fill(bench.velocity, Vector3(0.3, 0, 0.1));
+    const auto side = bench.take_part(one_sphere({0.15, 0.15, 0.15}, radius, density));
+    Fields begin;
+    side->start({}, begin);
+    // The distance to the terminal velocity falls by 1/(1 + b) a window: to 1e-16 in 37 (1 + b)/b.
+    const int windows = 10 + static_cast<int>(40 * (1 + ratio) / ratio);
+    for (int step = 1; step <= windows; ++step) {
+      Fields out;
+      side->advance(bench.window(step), bench.fluid(), out, quiet);
+      side->commit();
+    }
+    Fields end;
+    side->snapshot(end);
+    const Vector3 slip = Vector3(0.3, 0, 0.1) - end.vectors("velocity", 1)[0];
+    // Velocities of 0.3 and aτ are subtracted; each window rounds v, damped by 1/(1 + b).
+    const double tolerance = 1e-15 * (0.3 + reduced * tau) * (1 + 1 / ratio) * 4;
+    EXPECT_NEAR(slip.z(), reduced * tau, tolerance) << "window/tau " << ratio;
+    EXPECT_NEAR(slip.x(), 0, tolerance) << "window/tau " << ratio;
+  }
+}
+
+TEST(ParticleParticipant, does_not_expect_a_supported_particle_to_fall) {
+  Bench bench;
+  const auto side = bench.take_part(one_sphere({0.15, 0.15, 0.15}, 1e-3, 2500), true);
+  Fields out;
+  side->start({}, out);
+  EXPECT_LT(sum(out.vectors(field::drag_source, 27)).z(), 0);  // nothing known yet: it may fall
+  for (int step = 1; step <= 3; ++step) {
+    Fields next;
+    side->advance(bench.window(step), bench.fluid(), next, quiet);
+    side->commit();
+    // v* = v = 0: the fluid at rest stays at rest, exactly.
+    EXPECT_EQ(sum(next.vectors(field::drag_source, 27)), Vector3(0, 0, 0)) << step;
+  }
+}
+
+TEST(ParticleParticipant, gives_a_supported_particle_the_full_drag) {
+  Bench bench;
+  const double radius = 1e-3;
+  bench.scene.fluid.viscosity = 0.2;  // window/τ = 0.36
+  std::ranges::fill(bench.velocity, Vector3(0, 0, 0.5));
+  const auto side = bench.take_part(one_sphere({0.15, 0.15, 0.15}, radius, 2500), true);
+  Fields begin;
+  side->start({}, begin);
+  Vector3 given = Vector3::Zero();
+  for (int step = 1; step <= 60; ++step) {
+    Fields out;
+    side->advance(bench.window(step), bench.fluid(), out, quiet);
+    given = sum(out.vectors(field::impulse_given, 27));
+    side->commit();
+  }
+  const double stokes = 3 * std::numbers::pi * 0.2 * 2 * radius * 0.5;
+  EXPECT_NEAR(given.z(), 1e-3 * stokes, 1e-14 * 1e-3 * stokes);
+}
+
+TEST(ParticleParticipant, hands_over_the_momentum_that_the_fluid_lost_the_window_before) {
+  Bench bench;
+  bench.scene.scene.gravity.setZero();
+  bench.scene.interphase.drag = DragLaw::gidaspow;
+  for (const double viscosity : {1.8e-5, 1.0}) {  // Δt/τ from 1e-4 to 60
+    bench.scene.fluid.viscosity = viscosity;
+    for (std::size_t c = 0; c < bench.velocity.size(); ++c) {
+      bench.velocity[c] = {0.1 * static_cast<double>(c % 5), 0, 0.5};
+      bench.gradient[c].setZero();
+    }
+    const auto side = bench.take_part(cloud());
+    Fields begin;
+    side->start({}, begin);
+    Vector3 lost = Vector3::Zero();  // by the fluid in the window before; nothing before the first
+    double scale = 0;
+    for (int step = 1; step <= 30; ++step) {
+      const Vector3 before = momentum(*side);
+      Fields out;
+      side->advance(bench.window(step), bench.fluid(), out, quiet);
+      const Vector3 given = sum(out.vectors(field::impulse_given, 27));
+      side->commit();
+      const Vector3 gained = momentum(*side) - before;
+      scale += momentum(*side).norm();
+      // Sums over 60 particles and 27 cells.
+      EXPECT_LE((given - lost).norm(), 1e-13 * scale) << step;
+      EXPECT_LE((gained - lost).norm(), 1e-13 * scale) << step;
+      // The fluid: in each cell its own mass, with implicit drag.
+      const auto coefficient = out.scalars(field::drag_coefficient, 27);
+      const auto source = out.vectors(field::drag_source, 27);
+      lost.setZero();
+      for (int c = 0; c < 27; ++c) {
+        const double mass = 1.2 * bench.mesh.cell_volumes[c];
+        const Vector3 old = bench.velocity[c];
+        bench.velocity[c] = (mass * old + 1e-3 * source[c]) / (mass + 1e-3 * coefficient[c]);
+        lost -= 1e-3 * (source[c] - coefficient[c] * bench.velocity[c]);
+      }
+      EXPECT_GT(lost.norm(), 0);
+    }
+  }
+}
+
+TEST(ParticleParticipant, repeats_a_window_with_the_same_bits_after_a_rollback) {
+  Bench bench;
+  bench.scene.interphase.drag = DragLaw::gidaspow;
+  std::ranges::fill(bench.velocity, Vector3(0.2, 0, 0.5));
+  std::ranges::fill(bench.gradient, Vector3(0, 3, -20));
+  const auto straight = bench.take_part(cloud());
+  const auto retried = bench.take_part(cloud());
+  Fields begin;
+  straight->start({}, begin);
+  Fields again;
+  retried->start({}, again);
+  for (int step = 1; step <= 4; ++step) {
+    Fields expected;
+    straight->advance(bench.window(step), bench.fluid(), expected, quiet);
+    const auto wanted = copy(expected);
+    straight->commit();
+
+    const auto fluid = bench.velocity;
+    std::ranges::fill(bench.velocity, Vector3(-3, 1, 7));  // an attempt with another answer
+    Fields refused;
+    retried->advance({step, 0, 3e-3}, bench.fluid(), refused, quiet);
+    EXPECT_NE(copy(refused), wanted);
+    retried->rollback();
+    bench.velocity = fluid;
+    Fields out;
+    retried->advance(bench.window(step), bench.fluid(), out, quiet);
+    EXPECT_EQ(copy(out), wanted) << step;
+    retried->commit();
+    for (Vector3& u : bench.velocity) u *= 1.1;
+  }
+  Fields one;
+  Fields two;
+  straight->snapshot(one);
+  retried->snapshot(two);
+  EXPECT_EQ(copy(one), copy(two));
+}
+
+TEST(ParticleParticipant, has_the_same_bits_for_any_number_of_threads) {
+  std::vector<std::map<std::string, std::vector<double>>> results;
+  for (const int threads : {1, 2, 5}) {
+    Bench bench;
+    bench.scene.particles.numerics.threads = threads;
+    bench.scene.interphase.drag = DragLaw::gidaspow;
+    std::ranges::fill(bench.velocity, Vector3(0.2, 0, 0.5));
+    const auto side = bench.take_part(cloud());
+    Fields begin;
+    side->start({}, begin);
+    for (int step = 1; step <= 3; ++step) {
+      Fields out;
+      side->advance(bench.window(step), bench.fluid(), out, quiet);
+      side->commit();
+      if (step == 3) results.push_back(copy(out));
+    }
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+TEST(ParticleParticipant, keeps_its_committed_state_when_a_window_fails) {
+  Bench bench;
+  std::ranges::fill(bench.velocity, Vector3(0, 0, 0.5));
+  const auto side = bench.take_part(cloud());
+  Fields begin;
+  side->start({}, begin);
+  Fields out;
+  side->advance(bench.window(1), bench.fluid(), out, quiet);
+  side->commit();
+  Fields before;
+  side->snapshot(before);
+  const auto kept = copy(before);
+  const auto good = bench.velocity;
+  bench.velocity[5].x() = std::numeric_limits<double>::quiet_NaN();
+  std::ranges::fill(bench.velocity, bench.velocity[5]);
+  Fields bad;
+  EXPECT_THROW(side->advance(bench.window(2), bench.fluid(), bad, quiet), NumericsError);
+  side->rollback();
+  Fields after;
+  side->snapshot(after);
+  EXPECT_EQ(copy(after), kept);
+  bench.velocity = good;
+  Fields retry;
+  side->advance(bench.window(2), bench.fluid(), retry, quiet);
+  side->commit();
+}
+
+TEST(ParticleParticipant, refuses_calls_out_of_order) {
+  Bench bench;
+  const auto side = bench.take_part(cloud());
+  Fields out;
+  side->start({}, out);
+  EXPECT_THROW(side->commit(), ProtocolError);
+  side->advance(bench.window(1), bench.fluid(), out, quiet);
+  Fields other;
+  EXPECT_THROW(side->advance(bench.window(2), bench.fluid(), other, quiet), ProtocolError);
+  EXPECT_THROW(side->snapshot(other), ProtocolError);
+  side->commit();
+  side->snapshot(other);
+}
+
+TEST(ParticleParticipant, cuts_the_window_into_the_sub_steps_of_the_scene) {
+  Bench bench;
+  FreeFlight* engine = nullptr;
+  ParticleParticipant side("test", [&](const Scene& scene, const Mesh&) {
+    auto made = std::make_unique<FreeFlight>(cloud(), scene.scene.gravity, Vector3::Constant(0.3));
+    engine = made.get();
+    return made;
+  });
+  side.configure(bench.scene, bench.mesh);
+  Fields out;
+  side.start({}, out);
+  side.advance(bench.window(1), bench.fluid(), out, quiet);
+  EXPECT_EQ(engine->sub_steps_seen, 4);  // 1e-3/2.5e-4
+}
+
+TEST(MakeParticleParticipant, refuses_an_engine_that_the_scene_does_not_ask_for) {
+  EXPECT_THROW(make_particle_participant("lammps"), ConfigError);
+  Bench bench;
+  bench.scene.particles.backend = ParticleBackend::kinematic;
+  const auto side = make_particle_participant("native");
+  EXPECT_EQ(side->identity().backend, "native");
+  EXPECT_THROW(side->configure(bench.scene, bench.mesh), ConfigError);
+}
+
+TEST(MakeParticleParticipant, takes_part_with_an_engine_or_with_prescribed_solids) {
+  Bench bench;
+  bench.scene.particles.backend = ParticleBackend::kinematic;
+  bench.scene.particles.materials["glass"].density = 2500;
+  InsertionSettings insertion;
+  insertion.type = InsertionType::packing;
+  insertion.material = "glass";
+  insertion.diameter = 0.02;
+  insertion.count = 25;
+  bench.scene.particles.insertion = {insertion};
+  const auto moving = make_particle_participant("kinematic");
+  moving->configure(bench.scene, bench.mesh);
+  Fields out;
+  moving->start({}, out);
+  EXPECT_EQ(out.number(field::particle_count), 25);
+
+  bench.scene.interphase.voidage = VoidageMap::prescribed;
+  bench.scene.interphase.prescribed = PrescribedSettings{"0.5", 1e-3};
+  const auto solids = make_particle_participant("native");
+  solids->configure(bench.scene, bench.mesh);
+  Fields given;
+  solids->start({}, given);
+  EXPECT_EQ(given.scalars(field::voidage, 27)[13], 0.5);
+}
+
+}  // namespace
+}  // namespace fluxpact

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "coordinator/audit/audit_row.hpp"
 #include "coordinator/run/run.hpp"
 #include "coordinator/scene/load_scene.hpp"
 #include "proto/base/version.hpp"
@@ -45,15 +46,18 @@ int dispatch(int argc, char** argv) {
   CLI::App* check = app.add_subcommand(
       "check", "Check a scene without running it; shows every error with its place");
   add_scene(check);
-  CLI::App* reference =
-      app.add_subcommand("reference", "Print the reference of all scene keys as Markdown");
+  CLI::App* reference = app.add_subcommand("reference", "Print a reference as Markdown");
+  std::string subject = "scene";
+  reference->add_option("subject", subject, "scene (its keys) or audit (the columns of audit.csv)")
+      ->check(CLI::IsMember({"scene", "audit"}))
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
   }
   if (*reference) {
-    fmt::print("{}", scene_reference());
+    fmt::print("{}", subject == "scene" ? scene_reference() : audit_reference());
   } else if (*check) {
     check_scene(options);
   } else {

@@ -5,8 +5,9 @@
 namespace fluxpact {
 namespace {
 
-/// Inverse of a symmetric, positive semidefinite matrix on its range. With weights 1/|d|² its entries are of order
-/// one for any size and aspect ratio of the cell, so a fixed threshold tells zero from small.
+/// Inverse of a symmetric, positive semidefinite matrix on its range. With weights 1/|d|² its
+/// entries are of order one for any size and aspect ratio of the cell, so a fixed threshold tells
+/// zero from small.
 Matrix3 inverse_on_range(const Matrix3& matrix) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(matrix);
   const Vector3& values = solver.eigenvalues();
@@ -20,13 +21,12 @@ Matrix3 inverse_on_range(const Matrix3& matrix) {
 }
 
 /// From the cell's centre to where the other value stands.
-Vector3 reach(const Stencil& s, int side) {
-  return s.side_sign[side] * s.delta[s.side_face[side]];
-}
+Vector3 reach(const Stencil& s, int side) { return s.side_sign[side] * s.delta[s.side_face[side]]; }
 
 }  // namespace
 
-std::vector<Vector3> gradient_coefficients(const Stencil& s, std::span<const std::uint8_t> gives_value) {
+std::vector<Vector3> gradient_coefficients(const Stencil& s,
+                                           std::span<const std::uint8_t> gives_value) {
   std::vector<Vector3> coefficients(s.side_face.size(), Vector3::Zero());
   const auto counts = [&](int side) {
     return s.side_other[side] >= 0 || gives_value[s.side_face[side] - s.internal_faces] != 0;
@@ -48,28 +48,30 @@ std::vector<Vector3> gradient_coefficients(const Stencil& s, std::span<const std
   return coefficients;
 }
 
-void gradient(const Stencil& s, std::span<const Vector3> coefficients, std::span<const Vector3> field,
-              std::span<const Vector3> boundary_jump, std::span<Matrix3> out) {
+void gradient(const Stencil& s, std::span<const Vector3> coefficients,
+              std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
+              std::span<Matrix3> out) {
   for (int cell = 0; cell < s.cells; ++cell) {
     Matrix3 sum = Matrix3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
-      const Vector3 jump =
-          other >= 0 ? Vector3(field[other] - field[cell]) : boundary_jump[s.side_face[side] - s.internal_faces];
+      const Vector3 jump = other >= 0 ? Vector3(field[other] - field[cell])
+                                      : boundary_jump[s.side_face[side] - s.internal_faces];
       sum.noalias() += jump * coefficients[side].transpose();
     }
     out[cell] = sum;
   }
 }
 
-void gradient(const Stencil& s, std::span<const Vector3> coefficients, std::span<const double> field,
-              std::span<const double> boundary_jump, std::span<Vector3> out) {
+void gradient(const Stencil& s, std::span<const Vector3> coefficients,
+              std::span<const double> field, std::span<const double> boundary_jump,
+              std::span<Vector3> out) {
   for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 sum = Vector3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
-      const double jump =
-          other >= 0 ? field[other] - field[cell] : boundary_jump[s.side_face[side] - s.internal_faces];
+      const double jump = other >= 0 ? field[other] - field[cell]
+                                     : boundary_jump[s.side_face[side] - s.internal_faces];
       sum += jump * coefficients[side];
     }
     out[cell] = sum;

@@ -21,8 +21,9 @@ std::vector<Vector3> reconstruction_coefficients(const Stencil& s) {
   return coefficients;
 }
 
-void reconstruct(const Stencil& s, std::span<const Vector3> coefficients, std::span<const double> flux,
-                 std::span<const Matrix3> gradient, std::span<Vector3> out) {
+void reconstruct(const Stencil& s, std::span<const Vector3> coefficients,
+                 std::span<const double> flux, std::span<const Matrix3> gradient,
+                 std::span<Vector3> out) {
   // A and φ change sign together when seen from the neighbour, so the sign of a side drops out.
   for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 sum = Vector3::Zero();

@@ -18,9 +18,11 @@ void add_faces(const Mesh& mesh, Stencil& s) {
     const double projected = delta.dot(area);
     if (!(projected > 0) || !(from_owner.dot(area) > 0) || from_owner.dot(area) > projected) {
       throw ConfigError(
-          "mesh: face {} at ({}, {}, {}) does not lie between the centres of its cells (cell {}); the mesh is too "
+          "mesh: face {} at ({}, {}, {}) does not lie between the centres of its cells (cell {}); "
+          "the mesh is too "
           "skewed for a two-point flux: move its points or make the cells convex",
-          f, mesh.face_centres[f].x(), mesh.face_centres[f].y(), mesh.face_centres[f].z(), mesh.owner[f]);
+          f, mesh.face_centres[f].x(), mesh.face_centres[f].y(), mesh.face_centres[f].z(),
+          mesh.owner[f]);
     }
     const double conductance = area.squaredNorm() / projected;
     s.area.push_back(area);

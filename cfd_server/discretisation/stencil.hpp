@@ -1,6 +1,7 @@
 // Geometry of the mesh in the form in which the scheme meets it, computed once a run.
 //
-// First thing that a fluid solver builds; everything in discretisation/ and vans/ reads it, nothing writes it.
+// First thing that a fluid solver builds; everything in discretisation/ and vans/ reads it, nothing
+// writes it.
 #pragma once
 
 #include <vector>
@@ -10,33 +11,38 @@
 
 namespace fluxpact {
 
-/// Owner P, neighbour N (internal faces only), area vector A out of P, d = x_N − x_P (boundary: x_f − x_P).
+/// Owner P, neighbour N (internal faces only), area vector A out of P, d = x_N − x_P (boundary: x_f
+/// − x_P).
 struct Stencil {
   int cells = 0;
   int faces = 0;
   int internal_faces = 0;
   std::vector<int> owner;
-  std::vector<int> neighbour;            ///< internal faces
-  std::vector<double> volume;            ///< [m³]
-  std::vector<Vector3> centre;           ///< [m] of cells
-  std::vector<Vector3> area;             ///< [m²]
-  std::vector<double> area_size;         ///< [m²] |A|
-  std::vector<double> weight;            ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
-  std::vector<double> conductance;       ///< g = |A|²/(A·d) [m]
-  std::vector<Vector3> cross;            ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
-  std::vector<Vector3> delta;            ///< d [m]
-  std::vector<Vector3> from_owner;       ///< x_f − x_P [m]
-  std::vector<Vector3> from_neighbour;   ///< x_f − x_N [m], at N's side of a periodic pair; internal faces
+  std::vector<int> neighbour;     ///< internal faces
+  std::vector<double> volume;     ///< [m³]
+  std::vector<Vector3> centre;    ///< [m] of cells
+  std::vector<Vector3> area;      ///< [m²]
+  std::vector<double> area_size;  ///< [m²] |A|
+  std::vector<double>
+      weight;  ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
+  std::vector<double> conductance;  ///< g = |A|²/(A·d) [m]
+  std::vector<Vector3>
+      cross;  ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
+  std::vector<Vector3> delta;       ///< d [m]
+  std::vector<Vector3> from_owner;  ///< x_f − x_P [m]
+  std::vector<Vector3>
+      from_neighbour;  ///< x_f − x_N [m], at N's side of a periodic pair; internal faces
 
   // The sides of each cell. A cell that is its own periodic neighbour has both sides of that face.
-  std::vector<int> side_offsets;         ///< CSR: cells + 1 entries
+  std::vector<int> side_offsets;  ///< CSR: cells + 1 entries
   std::vector<int> side_face;
-  std::vector<int> side_other;           ///< the cell across, −1 at the boundary
-  std::vector<double> side_sign;         ///< +1 where the cell owns the face, −1 where it is the neighbour
+  std::vector<int> side_other;    ///< the cell across, −1 at the boundary
+  std::vector<double> side_sign;  ///< +1 where the cell owns the face, −1 where it is the neighbour
 
   bool orthogonal = false;  ///< every k vanishes
-  bool centred = false;     ///< opposite faces lie at equal distances from the cell's centre (lattices)
-  bool uniform = false;     ///< a lattice with equal cells
+  bool centred =
+      false;  ///< opposite faces lie at equal distances from the cell's centre (lattices)
+  bool uniform = false;  ///< a lattice with equal cells
 
   int boundary_faces() const { return faces - internal_faces; }
 };

@@ -5,39 +5,41 @@
 namespace fluxpact {
 namespace {
 
-/// Harmonic mean of the slopes before and after, zero at an extremum: van Leer's ψ(r) times `step`, r = before/step.
+/// Harmonic mean of the slopes before and after, zero at an extremum: van Leer's ψ(r) times `step`,
+/// r = before/step.
 inline Vector3 limited_step(const Vector3& before, const Vector3& step) {
   const Eigen::Array3d product = before.array() * step.array();
   return (product > 0).select(2 * product / (before + step).array(), 0.0).matrix();
 }
 
-inline Vector3 higher_order_part(Convection scheme, const Vector3& step, const Vector3& rise, const Vector3& to_face,
-                                 const Matrix3& gradient, double share) {
+inline Vector3 higher_order_part(Convection scheme, const Vector3& step, const Vector3& rise,
+                                 const Vector3& to_face, const Matrix3& gradient, double share) {
   if (scheme == Convection::linear_upwind) return gradient * to_face;
   return share * limited_step(2 * rise - step, step);
 }
 
 void add_higher_order(const Stencil& s, const TransportCoefficients& c, Convection scheme,
-                      std::span<const Vector3> velocity, std::span<const Matrix3> gradient, std::span<Vector3> force) {
+                      std::span<const Vector3> velocity, std::span<const Matrix3> gradient,
+                      std::span<Vector3> force) {
   for (int f = 0; f < s.internal_faces; ++f) {
     const int p = s.owner[f];
     const int n = s.neighbour[f];
     const bool out = c.mass_flux[f] >= 0;
     const int upwind = out ? p : n;
-    const Vector3 step = out ? Vector3(velocity[n] - velocity[p]) : Vector3(velocity[p] - velocity[n]);
+    const Vector3 step =
+        out ? Vector3(velocity[n] - velocity[p]) : Vector3(velocity[p] - velocity[n]);
     const Vector3 along = out ? s.delta[f] : Vector3(-s.delta[f]);
     const Vector3& to_face = out ? s.from_owner[f] : s.from_neighbour[f];
     const double share = out ? s.weight[f] : 1 - s.weight[f];
-    const Vector3 part =
-        c.mass_flux[f] *
-        higher_order_part(scheme, step, gradient[upwind] * along, to_face, gradient[upwind], share);
+    const Vector3 part = c.mass_flux[f] * higher_order_part(scheme, step, gradient[upwind] * along,
+                                                            to_face, gradient[upwind], share);
     force[p] -= part;
     force[n] += part;
   }
 }
 
-void add_cross_diffusion(const Stencil& s, const TransportCoefficients& c, std::span<const Matrix3> gradient,
-                         std::span<Vector3> force) {
+void add_cross_diffusion(const Stencil& s, const TransportCoefficients& c,
+                         std::span<const Matrix3> gradient, std::span<Vector3> force) {
   for (int f = 0; f < s.faces; ++f) {
     const double viscous = c.diffusion[f] / s.conductance[f];  // μ ε_f
     const int p = s.owner[f];

@@ -43,14 +43,16 @@ class AlgebraicMultigrid final : public PressureSolver {
   void setup(const PressureMatrix& matrix) override {
     const OneThread one_thread;
     std::ranges::fill(values_, 0.0);
-    for (int cell = 0; cell < stencil_.cells; ++cell) values_[diagonal_place_[cell]] = matrix.diagonal[cell];
+    for (int cell = 0; cell < stencil_.cells; ++cell)
+      values_[diagonal_place_[cell]] = matrix.diagonal[cell];
     for (int f = 0; f < stencil_.internal_faces; ++f) {
       if (stencil_.owner[f] == stencil_.neighbour[f]) continue;
       values_[upper_place_[f]] -= matrix.coupling[f];
       values_[lower_place_[f]] -= matrix.coupling[f];
     }
     HYPRE_IJMatrixInitialize(matrix_);
-    HYPRE_IJMatrixSetValues(matrix_, stencil_.cells, row_sizes_.data(), rows_.data(), columns_.data(), values_.data());
+    HYPRE_IJMatrixSetValues(matrix_, stencil_.cells, row_sizes_.data(), rows_.data(),
+                            columns_.data(), values_.data());
     HYPRE_IJMatrixAssemble(matrix_);
     destroy_solver();
     create_solver();
@@ -74,7 +76,8 @@ class AlgebraicMultigrid final : public PressureSolver {
   }
 
  private:
-  /// Rows with their columns, one entry for all faces that join the same pair; and where each face's value goes.
+  /// Rows with their columns, one entry for all faces that join the same pair; and where each
+  /// face's value goes.
   void build_pattern() {
     rows_.resize(static_cast<std::size_t>(stencil_.cells));
     std::iota(rows_.begin(), rows_.end(), 0);
@@ -83,7 +86,8 @@ class AlgebraicMultigrid final : public PressureSolver {
     for (int cell = 0; cell < stencil_.cells; ++cell) {
       std::map<int, int> place_of_column;
       const auto place = [&](int column) {
-        const auto [entry, added] = place_of_column.try_emplace(column, static_cast<int>(columns_.size()));
+        const auto [entry, added] =
+            place_of_column.try_emplace(column, static_cast<int>(columns_.size()));
         if (added) columns_.push_back(column);
         return entry->second;
       };
@@ -91,7 +95,8 @@ class AlgebraicMultigrid final : public PressureSolver {
       for (int side = stencil_.side_offsets[cell]; side < stencil_.side_offsets[cell + 1]; ++side) {
         const int other = stencil_.side_other[side];
         if (other < 0 || other == cell) continue;
-        (stencil_.side_sign[side] > 0 ? upper_place_ : lower_place_)[stencil_.side_face[side]] = place(other);
+        (stencil_.side_sign[side] > 0 ? upper_place_ : lower_place_)[stencil_.side_face[side]] =
+            place(other);
       }
       row_sizes_.push_back(static_cast<int>(place_of_column.size()));
     }
@@ -112,11 +117,12 @@ class AlgebraicMultigrid final : public PressureSolver {
 
   void create_solver() {
     HYPRE_BoomerAMGCreate(&preconditioner_);
-    HYPRE_BoomerAMGSetCoarsenType(preconditioner_, 10);    // HMIS
-    HYPRE_BoomerAMGSetInterpType(preconditioner_, 6);      // extended+i
+    HYPRE_BoomerAMGSetCoarsenType(preconditioner_, 10);  // HMIS
+    HYPRE_BoomerAMGSetInterpType(preconditioner_, 6);    // extended+i
     HYPRE_BoomerAMGSetPMaxElmts(preconditioner_, 4);
     HYPRE_BoomerAMGSetAggNumLevels(preconditioner_, 1);
-    HYPRE_BoomerAMGSetRelaxType(preconditioner_, 8);       // symmetric l1-Gauss-Seidel, as conjugate gradients ask
+    HYPRE_BoomerAMGSetRelaxType(preconditioner_,
+                                8);  // symmetric l1-Gauss-Seidel, as conjugate gradients ask
     HYPRE_BoomerAMGSetStrongThreshold(preconditioner_, 0.5);
     HYPRE_BoomerAMGSetMaxIter(preconditioner_, 1);
     HYPRE_BoomerAMGSetTol(preconditioner_, 0.0);

@@ -11,13 +11,15 @@ using Preconditioner = Eigen::IncompleteCholesky<double>;
 
 class ConjugateGradient final : public PressureSolver {
  public:
-  explicit ConjugateGradient(const Stencil& stencil) : stencil_(stencil), matrix_(stencil.cells, stencil.cells) {
+  explicit ConjugateGradient(const Stencil& stencil)
+      : stencil_(stencil), matrix_(stencil.cells, stencil.cells) {
     solver_.setMaxIterations(10 * stencil.cells + 100);
   }
 
   void setup(const PressureMatrix& matrix) override {
     entries_.clear();
-    for (int cell = 0; cell < stencil_.cells; ++cell) entries_.emplace_back(cell, cell, matrix.diagonal[cell]);
+    for (int cell = 0; cell < stencil_.cells; ++cell)
+      entries_.emplace_back(cell, cell, matrix.diagonal[cell]);
     for (int f = 0; f < stencil_.internal_faces; ++f) {
       const int p = stencil_.owner[f];
       const int n = stencil_.neighbour[f];
@@ -34,7 +36,7 @@ class ConjugateGradient final : public PressureSolver {
     Eigen::Map<Eigen::VectorXd> solution(x.data(), stencil_.cells);
     solver_.setTolerance(tolerance);
     solution = solver_.solveWithGuess(b, solution).eval();
-    return static_cast<int>(solver_.iterations());
+    return static_cast<int>(solver_.iterations()) + 1;  // Eigen counts from zero
   }
 
  private:

@@ -1,4 +1,5 @@
-// Conjugate gradients with an incomplete Cholesky factor, from Eigen: needs nothing else, slower than multigrid.
+// Conjugate gradients with an incomplete Cholesky factor, from Eigen: needs nothing else, slower
+// than multigrid.
 #pragma once
 
 #include "cfd_server/linear/pressure_solver.hpp"

@@ -28,7 +28,8 @@ void start_hypre() {
     setenv("OMPI_MCA_btl", "self", 0);
     setenv("OMPI_MCA_pml", "ob1", 0);
     if (MPI_Init(nullptr, nullptr) != MPI_SUCCESS) {
-      throw SystemError("hypre: MPI_Init failed; choose fluid.numerics.solver: conjugate_gradient to do without");
+      throw SystemError(
+          "hypre: MPI_Init failed; choose fluid.numerics.solver: conjugate_gradient to do without");
     }
     HYPRE_Init();
     std::atexit(end_mpi);
@@ -43,8 +44,10 @@ void check_hypre(const char* call) {
   if (error == 0) return;
   HYPRE_ClearAllErrors();
   if (error == HYPRE_ERROR_CONV) return;
-  throw NumericsError("fluid: hypre reports error {} in {}; choose fluid.numerics.solver: conjugate_gradient to do without",
-                      error, call);
+  throw NumericsError(
+      "fluid: hypre reports error {} in {}; choose fluid.numerics.solver: conjugate_gradient to do "
+      "without",
+      error, call);
 }
 
 }  // namespace fluxpact

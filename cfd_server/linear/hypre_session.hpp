@@ -3,8 +3,8 @@
 
 namespace fluxpact {
 
-/// Start MPI (as one process, without its launcher daemon) and hypre unless that has been done. MPI that somebody
-/// else started is left to them to end.
+/// Start MPI (as one process, without its launcher daemon) and hypre unless that has been done. MPI
+/// that somebody else started is left to them to end.
 void start_hypre();
 
 /// Holds OpenMP to one thread while hypre works: its sums must not depend on the number of cores.

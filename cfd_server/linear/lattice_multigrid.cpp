@@ -65,7 +65,8 @@ class LatticeMultigrid final : public PressureSolver {
       if (place_[f] >= 0) values_[static_cast<std::size_t>(place_[f])] -= matrix.coupling[f];
     }
     std::array<int, 4> entries{0, 1, 2, 3};
-    HYPRE_StructMatrixSetBoxValues(matrix_, lower_.data(), upper_.data(), 4, entries.data(), values_.data());
+    HYPRE_StructMatrixSetBoxValues(matrix_, lower_.data(), upper_.data(), 4, entries.data(),
+                                   values_.data());
     HYPRE_StructMatrixAssemble(matrix_);
     destroy_solver();
     create_solver();
@@ -76,7 +77,8 @@ class LatticeMultigrid final : public PressureSolver {
   int iterate(std::span<const double> rhs, std::span<double> x, double tolerance) override {
     const OneThread one_thread;
     // hypre takes its input as non-const, and leaves it alone.
-    HYPRE_StructVectorSetBoxValues(rhs_, lower_.data(), upper_.data(), const_cast<double*>(rhs.data()));
+    HYPRE_StructVectorSetBoxValues(rhs_, lower_.data(), upper_.data(),
+                                   const_cast<double*>(rhs.data()));
     HYPRE_StructVectorSetBoxValues(solution_, lower_.data(), upper_.data(), x.data());
     HYPRE_StructPCGSetTol(solver_, tolerance);
     HYPRE_StructPCGSolve(solver_, matrix_, rhs_, solution_);
@@ -88,8 +90,9 @@ class LatticeMultigrid final : public PressureSolver {
   }
 
  private:
-  /// Where each internal face's coupling stands among the four entries a cell: with the later of its two cells, or,
-  /// across a wrapped period, with the first cell of the row, whose lower neighbour is the last.
+  /// Where each internal face's coupling stands among the four entries a cell: with the later of
+  /// its two cells, or, across a wrapped period, with the first cell of the row, whose lower
+  /// neighbour is the last.
   void place_faces() {
     place_.assign(static_cast<std::size_t>(stencil_.internal_faces), -1);
     const std::array<int, 3> stride{1, size_[0], size_[0] * size_[1]};
@@ -111,15 +114,16 @@ class LatticeMultigrid final : public PressureSolver {
     HYPRE_StructPFMGSetZeroGuess(preconditioner_);
     HYPRE_StructPFMGSetNumPreRelax(preconditioner_, 1);
     HYPRE_StructPFMGSetNumPostRelax(preconditioner_, 1);
-    // Conjugate gradients ask for a symmetric smoother. Symmetric red-black Gauss-Seidel (2) is the best, but a period
-    // that is odd on some level has no two colours: then weighted Jacobi (1).
+    // Conjugate gradients ask for a symmetric smoother. Symmetric red-black Gauss-Seidel (2) is the
+    // best, but a period that is odd on some level has no two colours: then weighted Jacobi (1).
     const bool wraps = wrap_[0] + wrap_[1] + wrap_[2] > 0;
     HYPRE_StructPFMGSetRelaxType(preconditioner_, wraps ? 1 : 2);
     HYPRE_StructPFMGSetRAPType(preconditioner_, 0);
     HYPRE_StructPCGCreate(MPI_COMM_SELF, &solver_);
     HYPRE_StructPCGSetTwoNorm(solver_, 1);
     HYPRE_StructPCGSetMaxIter(solver_, 500);
-    HYPRE_StructPCGSetPrecond(solver_, HYPRE_StructPFMGSolve, HYPRE_StructPFMGSetup, preconditioner_);
+    HYPRE_StructPCGSetPrecond(solver_, HYPRE_StructPFMGSolve, HYPRE_StructPFMGSetup,
+                              preconditioner_);
   }
 
   void destroy_solver() {
@@ -148,7 +152,8 @@ class LatticeMultigrid final : public PressureSolver {
 
 }  // namespace
 
-std::unique_ptr<PressureSolver> make_lattice_multigrid(const Lattice& lattice, const Stencil& stencil) {
+std::unique_ptr<PressureSolver> make_lattice_multigrid(const Lattice& lattice,
+                                                       const Stencil& stencil) {
   return std::make_unique<LatticeMultigrid>(lattice, stencil);
 }
 

@@ -62,7 +62,8 @@ int MomentumSolver::solve(double scale_squared) {
   while (!(norm <= target)) {
     if (iterations == most_iterations || !std::isfinite(norm)) {
       throw NumericsError(
-          "fluid: the momentum predictor has the relative residual {} after {} iterations; shorten coupling.window",
+          "fluid: the momentum predictor has the relative residual {} after {} iterations; shorten "
+          "coupling.window",
           std::sqrt(norm / scale_squared), iterations);
     }
     if (restart) {
@@ -85,8 +86,10 @@ int MomentumSolver::solve(double scale_squared) {
     norm = dot(residual, residual);
     ++iterations;
     const double rho_next = dot(shadow_, residual);
-    // The recurrence breaks down when the residual turns orthogonal to the shadow: start it anew from here.
-    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(dot(shadow_, shadow_)) || omega == 0) {
+    // The recurrence breaks down when the residual turns orthogonal to the shadow: start it anew
+    // from here.
+    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(dot(shadow_, shadow_)) ||
+        omega == 0) {
       restart = true;
       continue;
     }

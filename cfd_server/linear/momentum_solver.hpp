@@ -1,9 +1,10 @@
-// The linear system of the momentum predictor: three velocity components, coupled only at free-slip walls.
+// The linear system of the momentum predictor: three velocity components, coupled only at free-slip
+// walls.
 //
-// Diagonally dominant, not symmetric. BiCGSTAB with the diagonal as preconditioner (van der Vorst, SIAM J. Sci. Stat.
-// Comput. 13, 1992, 631-644): in a gas-solid window (small Courant number, strong drag) it needs a handful of
-// iterations, and unlike relaxation sweeps it does not stall when viscosity or a large Courant number couples
-// the whole mesh.
+// Diagonally dominant, not symmetric. BiCGSTAB with the diagonal as preconditioner (van der Vorst,
+// SIAM J. Sci. Stat. Comput. 13, 1992, 631-644): in a gas-solid window (small Courant number,
+// strong drag) it needs a handful of iterations, and unlike relaxation sweeps it does not stall
+// when viscosity or a large Courant number couples the whole mesh.
 #pragma once
 
 #include <vector>
@@ -20,18 +21,20 @@ struct SlipFace {
   double weight = 0;  ///< [kg/s]
 };
 
-/// diagonal_P x_P − Σ_sides weight x_other − Σ_slip weight (x − (x·n) n) = residual. The caller fills the public arrays.
+/// diagonal_P x_P − Σ_sides weight x_other − Σ_slip weight (x − (x·n) n) = residual. The caller
+/// fills the public arrays.
 class MomentumSolver {
  public:
   MomentumSolver(const Stencil& stencil, std::vector<SlipFace> slip_faces);
 
-  /// Solve for `change`, from zero, until |residual| <= tolerance |scale|; scale_squared in N². The tolerance is a
-  /// fixed 1e-10: u* only starts the pressure correction, which restores continuity and a closed momentum balance, so
-  /// this is far below its effect on u. Returns the iterations; throws NumericsError if 1000 do not suffice.
+  /// Solve for `change`, from zero, until |residual| <= tolerance |scale|; scale_squared in N². The
+  /// tolerance is a fixed 1e-10: u* only starts the pressure correction, which restores continuity
+  /// and a closed momentum balance, so this is far below its effect on u. Returns the iterations;
+  /// throws NumericsError if 1000 do not suffice.
   int solve(double scale_squared);
 
-  std::vector<double> diagonal;   ///< [kg/s] one a cell
-  std::vector<double> weight;     ///< [kg/s] one a side of a cell, 0 at the boundary
+  std::vector<double> diagonal;  ///< [kg/s] one a cell
+  std::vector<double> weight;    ///< [kg/s] one a side of a cell, 0 at the boundary
   std::vector<SlipFace> slip;
   std::vector<Vector3> residual;  ///< [N] right-hand side; overwritten
   std::vector<Vector3> change;    ///< [m/s] solution

@@ -29,7 +29,8 @@ Residual residual_of(const Stencil& s, const PressureMatrix& matrix, std::span<c
   return {std::sqrt(squared), std::sqrt(scale)};
 }
 
-std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice, [[maybe_unused]] const Mesh& mesh,
+std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice,
+                                                     [[maybe_unused]] const Mesh& mesh,
                                                      const Stencil& stencil) {
 #ifdef FLUXPACT_HAS_HYPRE
   if (choice != LinearSolverChoice::conjugate_gradient) {
@@ -39,7 +40,8 @@ std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice, 
 #else
   if (choice == LinearSolverChoice::multigrid) {
     throw ConfigError(
-        "fluid.numerics.solver: multigrid needs hypre, and this build is without; install libhypre-dev and build "
+        "fluid.numerics.solver: multigrid needs hypre, and this build is without; install "
+        "libhypre-dev and build "
         "again, or choose 'automatic' or 'conjugate_gradient'");
   }
 #endif
@@ -58,20 +60,24 @@ int solve_pressure(PressureSolver& solver, const Stencil& stencil, const Pressur
     return 0;
   }
   const auto reached = [&](const Residual& residual, double slack) {
-    return residual.norm <= slack * std::max(tolerance * norm_of_rhs, rounding * residual.rounding_scale);
+    return residual.norm <=
+           slack * std::max(tolerance * norm_of_rhs, rounding * residual.rounding_scale);
   };
   Residual residual = residual_of(stencil, matrix, rhs, x);
   if (reached(residual, 1.0)) return 0;
   int iterations = 0;
-  // The recurrence of conjugate gradients may run ahead of the true residual: start again from where it stopped.
+  // The recurrence of conjugate gradients may run ahead of the true residual: start again from
+  // where it stopped.
   for (int attempt = 0; attempt < 3 && !reached(residual, 2.0); ++attempt) {
     iterations += solver.iterate(rhs, x, tolerance);
     residual = residual_of(stencil, matrix, rhs, x);
   }
-  // Demands beyond double precision end at the rounding of the equations, which grows with the spread of A.
+  // Demands beyond double precision end at the rounding of the equations, which grows with the
+  // spread of A.
   if (!reached(residual, 2.0) && !(residual.norm <= 1e3 * rounding * residual.rounding_scale)) {
     throw NumericsError(
-        "fluid: the pressure equation has the relative residual {} after {} iterations, {} was asked for; raise "
+        "fluid: the pressure equation has the relative residual {} after {} iterations, {} was "
+        "asked for; raise "
         "fluid.numerics.pressure_tolerance or choose another fluid.numerics.solver",
         residual.norm / norm_of_rhs, iterations, tolerance);
   }

@@ -1,7 +1,7 @@
 // The linear solvers of the pressure equation behind one small interface.
 //
-// The matrix is symmetric positive definite (a closed region's pressure is held by its first cell), set up once a
-// window and solved for each corrector, warm-started from the last pressure.
+// The matrix is symmetric positive definite (a closed region's pressure is held by its first cell),
+// set up once a window and solved for each corrector, warm-started from the last pressure.
 #pragma once
 
 #include <memory>
@@ -15,17 +15,19 @@ namespace fluxpact {
 
 /// A_PP = diagonal; A_PN = −coupling for the internal face between P and N.
 struct PressureMatrix {
-  std::vector<double> diagonal;  ///< one a cell: all couplings of the cell, pressure faces and holds included
+  std::vector<double>
+      diagonal;  ///< one a cell: all couplings of the cell, pressure faces and holds included
   std::vector<double> coupling;  ///< one an internal face, >= 0
 };
 
-/// r = b − A x, and |A||x| + |b| as the scale of its rounding. A cell that is its own neighbour couples with nothing.
+/// r = b − A x, and |A||x| + |b| as the scale of its rounding. A cell that is its own neighbour
+/// couples with nothing.
 struct Residual {
   double norm = 0;
   double rounding_scale = 0;
 };
-Residual residual_of(const Stencil& stencil, const PressureMatrix& matrix, std::span<const double> rhs,
-                     std::span<const double> x);
+Residual residual_of(const Stencil& stencil, const PressureMatrix& matrix,
+                     std::span<const double> rhs, std::span<const double> x);
 
 class PressureSolver {
  public:
@@ -35,13 +37,15 @@ class PressureSolver {
   virtual int iterate(std::span<const double> rhs, std::span<double> x, double tolerance) = 0;
 };
 
-/// hypre's PFMG-preconditioned conjugate gradients on lattices, BoomerAMG on other meshes, Eigen's conjugate gradients with an
-/// incomplete Cholesky factor without hypre. Asking for multigrid in a build without hypre is a ConfigError.
+/// hypre's PFMG-preconditioned conjugate gradients on lattices, BoomerAMG on other meshes, Eigen's
+/// conjugate gradients with an incomplete Cholesky factor without hypre. Asking for multigrid in a
+/// build without hypre is a ConfigError.
 std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice, const Mesh& mesh,
                                                      const Stencil& stencil);
 
-/// Solve and check the true residual. Returns the iterations, 0 if x is good enough already; throws NumericsError
-/// with what was reached if the solver fails. Residuals at the rounding of A x count as converged.
+/// Solve and check the true residual. Returns the iterations, 0 if x is good enough already; throws
+/// NumericsError with what was reached if the solver fails. Residuals at the rounding of A x count
+/// as converged.
 int solve_pressure(PressureSolver& solver, const Stencil& stencil, const PressureMatrix& matrix,
                    std::span<const double> rhs, std::span<double> x, double tolerance);
 

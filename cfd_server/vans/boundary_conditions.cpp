@@ -19,7 +19,8 @@ BoundarySettings settings_of(const Scene& scene, const Patch& patch) {
   if (entry != scene.fluid.boundaries.end()) return entry->second;
   if (patch.name == "walls") return {};
   throw ConfigError(
-      "fluid.boundaries: the patch '{}' has no condition; add '{}: {{type: velocity | mass_flow | pressure | wall, "
+      "fluid.boundaries: the patch '{}' has no condition; add '{}: {{type: velocity | mass_flow | "
+      "pressure | wall, "
       "...}}'",
       patch.name, patch.name);
 }
@@ -31,12 +32,15 @@ double patch_area(const Mesh& mesh, const Patch& patch) {
 }
 
 void check_entry(const std::string& name, const BoundarySettings& entry) {
-  if (entry.type == BoundaryType::velocity && entry.superficial.has_value() == entry.interstitial.has_value()) {
-    throw ConfigError("fluid.boundaries.{}: type velocity needs either 'superficial' or 'interstitial', {} given", name,
-                      entry.superficial ? "both are" : "neither is");
+  if (entry.type == BoundaryType::velocity &&
+      entry.superficial.has_value() == entry.interstitial.has_value()) {
+    throw ConfigError(
+        "fluid.boundaries.{}: type velocity needs either 'superficial' or 'interstitial', {} given",
+        name, entry.superficial ? "both are" : "neither is");
   }
   if (entry.type == BoundaryType::mass_flow && !entry.rate) {
-    throw ConfigError("fluid.boundaries.{}: type mass_flow needs 'rate' [kg/s], positive into the domain", name);
+    throw ConfigError(
+        "fluid.boundaries.{}: type mass_flow needs 'rate' [kg/s], positive into the domain", name);
   }
 }
 
@@ -69,11 +73,13 @@ BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh) {
           conditions.is_interstitial[b] = entry.interstitial ? 1 : 0;
           break;
         case BoundaryType::mass_flow:
-          conditions.given[b] = -(*entry.rate / (scene.fluid.density * area)) * mesh.face_areas[f] / size;
+          conditions.given[b] =
+              -(*entry.rate / (scene.fluid.density * area)) * mesh.face_areas[f] / size;
           break;
         case BoundaryType::pressure:
           conditions.kind[b] = FaceKind::pressure;
-          conditions.pressure[b] = entry.value - scene.fluid.density * scene.scene.gravity.dot(mesh.face_centres[f]);
+          conditions.pressure[b] =
+              entry.value - scene.fluid.density * scene.scene.gravity.dot(mesh.face_centres[f]);
           conditions.level += size * conditions.pressure[b];
           area_of_pressure += size;
           break;
@@ -90,8 +96,8 @@ BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh) {
   return conditions;
 }
 
-void update_boundary_values(const Stencil& s, const BoundaryConditions& conditions, std::span<const double> voidage,
-                            BoundaryValues& values) {
+void update_boundary_values(const Stencil& s, const BoundaryConditions& conditions,
+                            std::span<const double> voidage, BoundaryValues& values) {
   const auto faces = static_cast<std::size_t>(s.boundary_faces());
   values.flux.resize(faces);
   values.superficial.resize(faces);
@@ -100,14 +106,17 @@ void update_boundary_values(const Stencil& s, const BoundaryConditions& conditio
     const std::size_t f = b + static_cast<std::size_t>(s.internal_faces);
     const double own_voidage = voidage[s.owner[f]];
     const Vector3& given = conditions.given[b];
-    values.superficial[b] = conditions.is_interstitial[b] != 0 ? Vector3(own_voidage * given) : given;
+    values.superficial[b] =
+        conditions.is_interstitial[b] != 0 ? Vector3(own_voidage * given) : given;
     values.velocity[b] = conditions.is_interstitial[b] != 0 ? given : Vector3(given / own_voidage);
-    values.flux[b] = conditions.kind[b] == FaceKind::fixed_flux ? values.superficial[b].dot(s.area[f]) : 0.0;
+    values.flux[b] =
+        conditions.kind[b] == FaceKind::fixed_flux ? values.superficial[b].dot(s.area[f]) : 0.0;
   }
 }
 
-void boundary_jump(const Stencil& s, const BoundaryConditions& conditions, std::span<const Vector3> prescribed,
-                   std::span<const Vector3> field, std::span<Vector3> jump) {
+void boundary_jump(const Stencil& s, const BoundaryConditions& conditions,
+                   std::span<const Vector3> prescribed, std::span<const Vector3> field,
+                   std::span<Vector3> jump) {
   for (std::size_t b = 0; b < conditions.kind.size(); ++b) {
     const std::size_t f = b + static_cast<std::size_t>(s.internal_faces);
     const Vector3& own = field[s.owner[f]];
@@ -129,7 +138,8 @@ void boundary_jump(const Stencil& s, const BoundaryConditions& conditions, std::
 
 std::vector<std::uint8_t> faces_with_value(const BoundaryConditions& conditions, bool of_pressure) {
   std::vector<std::uint8_t> flags;
-  for (const FaceKind kind : conditions.kind) flags.push_back((kind == FaceKind::pressure) == of_pressure ? 1 : 0);
+  for (const FaceKind kind : conditions.kind)
+    flags.push_back((kind == FaceKind::pressure) == of_pressure ? 1 : 0);
   return flags;
 }
 

@@ -10,8 +10,9 @@ void resize(FaceCoefficients& c, const Stencil& s) {
   }
 }
 
-void assemble_faces(const Stencil& s, const BoundaryConditions& conditions, const MomentumCoefficients& m,
-                    std::span<const double> voidage, std::span<const double> old_flux, double density, double window,
+void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
+                    const MomentumCoefficients& m, std::span<const double> voidage,
+                    std::span<const double> old_flux, double density, double window,
                     FaceCoefficients& c) {
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
@@ -35,8 +36,9 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions, cons
   }
 }
 
-void explicit_flux(const Stencil& s, const BoundaryConditions& conditions, const BoundaryValues& values,
-                   const FaceCoefficients& c, const FaceFluxInput& in, std::span<double> flux) {
+void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
+                   const BoundaryValues& values, const FaceCoefficients& c, const FaceFluxInput& in,
+                   std::span<double> flux) {
   const double rebuilt = rebuilt_share(s);
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
@@ -50,7 +52,8 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions, const
     Vector3 force = w * in.specific_force[p];
     Vector3 value = in.superficial[p] + in.superficial_gradient[p] * s.from_owner[f];
     Vector3 slope = Vector3::Zero();
-    if (!s.orthogonal) slope = internal ? Vector3((1 - w) * in.pressure_gradient[p]) : in.pressure_gradient[p];
+    if (!s.orthogonal)
+      slope = internal ? Vector3((1 - w) * in.pressure_gradient[p]) : in.pressure_gradient[p];
     if (internal) {
       const int n = s.neighbour[f];
       force += (1 - w) * in.specific_force[n];
@@ -64,8 +67,9 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions, const
   }
 }
 
-void add_pressure_flux(const Stencil& s, const BoundaryConditions& conditions, const FaceCoefficients& c,
-                       std::span<const double> pressure, std::span<double> flux) {
+void add_pressure_flux(const Stencil& s, const BoundaryConditions& conditions,
+                       const FaceCoefficients& c, std::span<const double> pressure,
+                       std::span<double> flux) {
   for (int f = 0; f < s.faces; ++f) {
     const double outside =
         f < s.internal_faces ? pressure[s.neighbour[f]] : conditions.pressure[f - s.internal_faces];
@@ -73,8 +77,9 @@ void add_pressure_flux(const Stencil& s, const BoundaryConditions& conditions, c
   }
 }
 
-void predict_flux(const Stencil& s, std::span<const double> old_flux, std::span<const Vector3> superficial,
-                  std::span<const Vector3> old_superficial, std::span<double> flux) {
+void predict_flux(const Stencil& s, std::span<const double> old_flux,
+                  std::span<const Vector3> superficial, std::span<const Vector3> old_superficial,
+                  std::span<double> flux) {
   for (int f = 0; f < s.faces; ++f) {
     const int p = s.owner[f];
     const double w = s.weight[f];

@@ -1,10 +1,11 @@
 // The momentum balance at the faces: superficial fluxes as a function of the pressure.
 //
-// Along the path from P over the face to N the two half-cells act in series, each with its own voidage and drag, so a
-// voidage jump in one cell is exact. The face remembers its own flux φ^n; convection and viscous stress come as net
-// cell forces, their diagonal multiplies a second-order face value Q:
-//     φ_f = K { H − g (p_N − p_P) − k·∇p },   1/K = w R_P + (1−w) R_N,   R = (A_t + A_b + A_c)/(ε² V)
-//     H = [w G_P + (1−w) G_N]·A + m φ^n + R^c_f Q,   G = (C + S)/(ε V)
+// Along the path from P over the face to N the two half-cells act in series, each with its own
+// voidage and drag, so a voidage jump in one cell is exact. The face remembers its own flux φ^n;
+// convection and viscous stress come as net cell forces, their diagonal multiplies a second-order
+// face value Q:
+//     φ_f = K { H − g (p_N − p_P) − k·∇p },   1/K = w R_P + (1−w) R_N,   R = (A_t + A_b + A_c)/(ε²
+//     V) H = [w G_P + (1−w) G_N]·A + m φ^n + R^c_f Q,   G = (C + S)/(ε V)
 // In a steady state A_t, A_c and the old flux drop out: the result does not depend on the window.
 #pragma once
 
@@ -19,13 +20,13 @@ namespace fluxpact {
 
 /// Coefficients of one window, the same in all its correctors. One entry a face.
 struct FaceCoefficients {
-  std::vector<double> mobility;             ///< K [m³ s/kg]; 0 where the flux is given
-  std::vector<double> transport_resistance; ///< R^c_f [kg/(m³ s)]
-  std::vector<double> memory;               ///< m φ^n [kg/s²]: inertia of the old flux
+  std::vector<double> mobility;              ///< K [m³ s/kg]; 0 where the flux is given
+  std::vector<double> transport_resistance;  ///< R^c_f [kg/(m³ s)]
+  std::vector<double> memory;                ///< m φ^n [kg/s²]: inertia of the old flux
 };
 
-/// How much of Q is rebuilt from the cells: all on uniform lattices; elsewhere mostly the face's own last flux,
-/// because the interpolation error of irregular cells would feed back.
+/// How much of Q is rebuilt from the cells: all on uniform lattices; elsewhere mostly the face's
+/// own last flux, because the interpolation error of irregular cells would feed back.
 double rebuilt_share(const Stencil& stencil);
 
 void resize(FaceCoefficients& coefficients, const Stencil& stencil);
@@ -41,13 +42,15 @@ struct FaceFluxInput {
   std::span<const Vector3> specific_force;        ///< G = (C(u) + S)/(ε V) [N/m³], one a cell
   std::span<const Vector3> superficial;           ///< q = ε u [m/s], one a cell
   std::span<const Matrix3> superficial_gradient;  ///< ∇q [1/s], one a cell
-  std::span<const double> last_flux;              ///< φ of the corrector before [m³/s], one a face
-  std::span<const Vector3> pressure_gradient;     ///< least-squares ∇p [Pa/m], one a cell; empty on orthogonal meshes
+  std::span<const double> last_flux;  ///< φ of the corrector before [m³/s], one a face
+  std::span<const Vector3>
+      pressure_gradient;  ///< least-squares ∇p [Pa/m], one a cell; empty on orthogonal meshes
 };
 
 /// K {H − k·∇p} [m³/s]: the flux but for the pressure difference; where the flux is given, that.
-void explicit_flux(const Stencil& stencil, const BoundaryConditions& conditions, const BoundaryValues& values,
-                   const FaceCoefficients& coefficients, const FaceFluxInput& input, std::span<double> flux);
+void explicit_flux(const Stencil& stencil, const BoundaryConditions& conditions,
+                   const BoundaryValues& values, const FaceCoefficients& coefficients,
+                   const FaceFluxInput& input, std::span<double> flux);
 
 /// flux −= K g (p_N − p_P), with p_b at pressure faces [Pa].
 void add_pressure_flux(const Stencil& stencil, const BoundaryConditions& conditions,
@@ -55,7 +58,8 @@ void add_pressure_flux(const Stencil& stencil, const BoundaryConditions& conditi
                        std::span<double> flux);
 
 /// The face's first guess in a window: φ^n plus the change of ε u in its two cells [m³/s].
-void predict_flux(const Stencil& stencil, std::span<const double> old_flux, std::span<const Vector3> superficial,
-                  std::span<const Vector3> old_superficial, std::span<double> flux);
+void predict_flux(const Stencil& stencil, std::span<const double> old_flux,
+                  std::span<const Vector3> superficial, std::span<const Vector3> old_superficial,
+                  std::span<double> flux);
 
 }  // namespace fluxpact

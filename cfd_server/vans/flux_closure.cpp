@@ -5,7 +5,8 @@
 
 namespace fluxpact {
 
-ClosureTree make_closure_tree(const Stencil& s, const BoundaryConditions& conditions, const FluidRegions& regions) {
+ClosureTree make_closure_tree(const Stencil& s, const BoundaryConditions& conditions,
+                              const FluidRegions& regions) {
   const auto cells = static_cast<std::size_t>(s.cells);
   ClosureTree tree;
   tree.order.reserve(cells);
@@ -38,15 +39,16 @@ ClosureTree make_closure_tree(const Stencil& s, const BoundaryConditions& condit
   return tree;
 }
 
-double close_fluxes(ClosureTree& tree, const Stencil& s, std::span<const double> storage, std::span<double> flux) {
+double close_fluxes(ClosureTree& tree, const Stencil& s, std::span<const double> storage,
+                    std::span<double> flux) {
   std::ranges::fill(tree.carry, 0.0L);
   double largest = 0;
   for (auto it = tree.order.rbegin(); it != tree.order.rend(); ++it) {
     const int cell = *it;
     const int parent_face = tree.parent_face[cell];
     if (parent_face < 0) continue;
-    // The cell's sum is exact to its last digit, and what the rounding of the new flux leaves goes to the parent: so
-    // neither the cell's nor the global balance grows with the number of cells.
+    // The cell's sum is exact to its last digit, and what the rounding of the new flux leaves goes
+    // to the parent: so neither the cell's nor the global balance grows with the number of cells.
     long double sum = tree.carry[cell] + storage[cell];
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int f = s.side_face[side];

@@ -5,8 +5,9 @@
 namespace fluxpact {
 namespace {
 
-void assemble_faces(const Stencil& s, const BoundaryConditions& conditions, const FluidProperties& fluid,
-                    std::span<const double> flux, std::span<const double> voidage, TransportCoefficients& faces) {
+void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
+                    const FluidProperties& fluid, std::span<const double> flux,
+                    std::span<const double> voidage, TransportCoefficients& faces) {
   for (int f = 0; f < s.internal_faces; ++f) {
     const double w = s.weight[f];
     const double face_voidage = (1 - w) * voidage[s.owner[f]] + w * voidage[s.neighbour[f]];
@@ -21,7 +22,8 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions, cons
   }
   finish_coefficients(faces);
   for (int f = s.internal_faces; f < s.faces; ++f) {
-    // A free-slip wall holds the normal part of the velocity only: it has a weight, but no gradient of its own.
+    // A free-slip wall holds the normal part of the velocity only: it has a weight, but no gradient
+    // of its own.
     if (conditions.kind[f - s.internal_faces] == FaceKind::free_slip) {
       faces.into_owner[f] = fluid.viscosity * voidage[s.owner[f]] * s.conductance[f];
     }
@@ -41,9 +43,9 @@ void resize(MomentumCoefficients& c, const Stencil& s) {
   }
 }
 
-void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions, const FluidProperties& fluid,
-                       const FluidState& old_state, const SolidsInput& solids, double window,
-                       MomentumCoefficients& c) {
+void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
+                       const FluidProperties& fluid, const FluidState& old_state,
+                       const SolidsInput& solids, double window, MomentumCoefficients& c) {
   assemble_faces(s, conditions, fluid, old_state.face_flux, solids.voidage, c.faces);
   std::ranges::fill(c.transport, 0.0);
   for (int f = 0; f < s.faces; ++f) {
@@ -84,11 +86,13 @@ int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
   return iterations;
 }
 
-void close_momentum(const Stencil& s, const MomentumCoefficients& c, std::span<const double> voidage,
-                    std::span<const Vector3> force, std::span<const Vector3> velocity_before,
-                    std::span<const Vector3> velocity, std::span<Vector3> pressure_gradient) {
+void close_momentum(const Stencil& s, const MomentumCoefficients& c,
+                    std::span<const double> voidage, std::span<const Vector3> force,
+                    std::span<const Vector3> velocity_before, std::span<const Vector3> velocity,
+                    std::span<Vector3> pressure_gradient) {
   for (int cell = 0; cell < s.cells; ++cell) {
-    pressure_gradient[cell] = (c.known[cell] + force[cell] + c.transport[cell] * (velocity_before[cell] - velocity[cell]) -
+    pressure_gradient[cell] = (c.known[cell] + force[cell] +
+                               c.transport[cell] * (velocity_before[cell] - velocity[cell]) -
                                (c.inertia[cell] + c.drag[cell]) * velocity[cell]) /
                               (voidage[cell] * s.volume[cell]);
   }

@@ -16,9 +16,11 @@ void assemble_pressure_matrix(const Stencil& stencil, const BoundaryConditions& 
                               const FluidRegions& regions, const FaceCoefficients& coefficients,
                               std::span<const double> face_scale, PressureMatrix& matrix);
 
-/// rhs = source − Σ s φ_explicit + pressure faces. source [m³/s] one a cell, flux: explicit part [m³/s] one a face.
+/// rhs = source − Σ s φ_explicit + pressure faces. source [m³/s] one a cell, flux: explicit part
+/// [m³/s] one a face.
 void assemble_pressure_rhs(const Stencil& stencil, const BoundaryConditions& conditions,
                            const FaceCoefficients& coefficients, std::span<const double> face_scale,
-                           std::span<const double> source, std::span<const double> flux, std::span<double> rhs);
+                           std::span<const double> source, std::span<const double> flux,
+                           std::span<double> rhs);
 
 }  // namespace fluxpact

@@ -39,8 +39,9 @@ FluidRegions find_regions(const Stencil& s, const BoundaryConditions& conditions
 
 namespace {
 
-void settle(const Stencil& s, const FluidRegions& regions, int number, std::span<const double> boundary_flux,
-            double density, double window, std::int64_t step, std::span<double> storage) {
+void settle(const Stencil& s, const FluidRegions& regions, int number,
+            std::span<const double> boundary_flux, double density, double window, std::int64_t step,
+            std::span<double> storage) {
   const FluidRegion& region = regions.list[number];
   CompensatedSum stored;
   CompensatedSum outflow;
@@ -57,22 +58,28 @@ void settle(const Stencil& s, const FluidRegions& regions, int number, std::span
   if (std::abs(imbalance) > 1e-12 * largest_flow) {
     const Vector3& at = s.centre[region.first_cell];
     throw NumericsError(
-        "fluid, step {}: the region of {:.6g} m³ at ({:.6g}, {:.6g}, {:.6g}) has no pressure outlet, so what flows out must equal what "
-        "the solids displace; but the fluid in it changes by {:.6g} kg/s and {:.6g} kg/s are prescribed to leave: {:.6g} kg/s have "
-        "nowhere to go. Give it a patch of type pressure, balance its inlets, or keep the sum of the voidage constant",
+        "fluid, step {}: the region of {:.6g} m³ at ({:.6g}, {:.6g}, {:.6g}) has no pressure "
+        "outlet, so what flows out must equal what "
+        "the solids displace; but the fluid in it changes by {:.6g} kg/s and {:.6g} kg/s are "
+        "prescribed to leave: {:.6g} kg/s have "
+        "nowhere to go. Give it a patch of type pressure, balance its inlets, or keep the sum of "
+        "the voidage constant",
         step, region.volume, at.x(), at.y(), at.z(), stored.value(), outflow.value(), imbalance);
   }
   for (int cell = 0; cell < s.cells; ++cell) {
-    if (regions.of_cell[cell] == number) storage[cell] -= imbalance * (s.volume[cell] / region.volume);
+    if (regions.of_cell[cell] == number)
+      storage[cell] -= imbalance * (s.volume[cell] / region.volume);
   }
 }
 
 }  // namespace
 
-void settle_closed_regions(const Stencil& s, const FluidRegions& regions, std::span<const double> boundary_flux,
-                           double density, double window, std::int64_t step, std::span<double> storage) {
+void settle_closed_regions(const Stencil& s, const FluidRegions& regions,
+                           std::span<const double> boundary_flux, double density, double window,
+                           std::int64_t step, std::span<double> storage) {
   for (int number = 0; number < static_cast<int>(regions.list.size()); ++number) {
-    if (!regions.list[number].open) settle(s, regions, number, boundary_flux, density, window, step, storage);
+    if (!regions.list[number].open)
+      settle(s, regions, number, boundary_flux, density, window, step, storage);
   }
 }
 

@@ -1,7 +1,7 @@
 // The connected parts of the mesh, and whether each can take up what the solids displace.
 //
-// Used before the pressure solve (a region without a pressure face has no solution unless its sums fit) and to fix
-// the level of its pressure.
+// Used before the pressure solve (a region without a pressure face has no solution unless its sums
+// fit) and to fix the level of its pressure.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace fluxpact {
 
 struct FluidRegion {
-  double volume = 0;    ///< [m³]
-  int first_cell = 0;   ///< lowest cell; its pressure is held where the region is closed
-  bool open = false;    ///< has a pressure face
+  double volume = 0;   ///< [m³]
+  int first_cell = 0;  ///< lowest cell; its pressure is held where the region is closed
+  bool open = false;   ///< has a pressure face
 };
 
 struct FluidRegions {
@@ -25,10 +25,12 @@ struct FluidRegions {
 
 FluidRegions find_regions(const Stencil& stencil, const BoundaryConditions& conditions);
 
-/// For regions without a pressure face: the sum of storage [kg/s, one a cell] and boundary flux [m³/s] must vanish.
-/// What is left to rounding is spread over the cells by volume (storage is changed), so that a solution exists exactly.
-/// Throws NumericsError with the imbalance and its parts if it is more than rounding (1e-12 of ρV/Δt and the flows).
-void settle_closed_regions(const Stencil& stencil, const FluidRegions& regions, std::span<const double> boundary_flux,
-                           double density, double window, std::int64_t step, std::span<double> storage);
+/// For regions without a pressure face: the sum of storage [kg/s, one a cell] and boundary flux
+/// [m³/s] must vanish. What is left to rounding is spread over the cells by volume (storage is
+/// changed), so that a solution exists exactly. Throws NumericsError with the imbalance and its
+/// parts if it is more than rounding (1e-12 of ρV/Δt and the flows).
+void settle_closed_regions(const Stencil& stencil, const FluidRegions& regions,
+                           std::span<const double> boundary_flux, double density, double window,
+                           std::int64_t step, std::span<double> storage);
 
 }  // namespace fluxpact

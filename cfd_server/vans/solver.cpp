@@ -20,7 +20,8 @@ void resize(FluidState& state, const Stencil& s) {
   state.pressure_gradient.assign(cells, Vector3::Zero());
 }
 
-/// Flux of pressure faces so that what flows in flows out: the surplus of each region in proportion to area.
+/// Flux of pressure faces so that what flows in flows out: the surplus of each region in proportion
+/// to area.
 void balance_outlets(const FluidProblem& problem, std::vector<double>& flux) {
   const Stencil& s = problem.stencil;
   std::vector<double> surplus(problem.regions.list.size(), 0.0);
@@ -28,7 +29,8 @@ void balance_outlets(const FluidProblem& problem, std::vector<double>& flux) {
   for (int f = s.internal_faces; f < s.faces; ++f) {
     const int region = problem.regions.of_cell[s.owner[f]];
     surplus[region] += flux[f];
-    if (problem.conditions.kind[f - s.internal_faces] == FaceKind::pressure) outlet_area[region] += s.area_size[f];
+    if (problem.conditions.kind[f - s.internal_faces] == FaceKind::pressure)
+      outlet_area[region] += s.area_size[f];
   }
   for (int f = s.internal_faces; f < s.faces; ++f) {
     if (problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
@@ -39,11 +41,14 @@ void balance_outlets(const FluidProblem& problem, std::vector<double>& flux) {
 
 void check_settings(const Scene& scene) {
   const FluidSettings& fluid = scene.fluid;
-  if (!(fluid.density > 0)) throw ConfigError("fluid.density is {} kg/m³; it must be positive", fluid.density);
-  if (!(fluid.viscosity >= 0)) throw ConfigError("fluid.viscosity is {} Pa s; it must not be negative", fluid.viscosity);
+  if (!(fluid.density > 0))
+    throw ConfigError("fluid.density is {} kg/m³; it must be positive", fluid.density);
+  if (!(fluid.viscosity >= 0))
+    throw ConfigError("fluid.viscosity is {} Pa s; it must not be negative", fluid.viscosity);
   if (fluid.numerics.correctors < 1) {
-    throw ConfigError("fluid.numerics.correctors is {}; at least 1 is needed, 2 keep the order of the pressure",
-                      fluid.numerics.correctors);
+    throw ConfigError(
+        "fluid.numerics.correctors is {}; at least 1 is needed, 2 keep the order of the pressure",
+        fluid.numerics.correctors);
   }
 }
 
@@ -51,7 +56,9 @@ void check_settings(const Scene& scene) {
 
 struct VansSolver::Impl {
   Impl(const Scene& scene, const Mesh& mesh)
-      : problem(make_problem(scene, mesh)), fields(problem, mesh), initial_superficial(scene.fluid.initial.superficial) {
+      : problem(make_problem(scene, mesh)),
+        fields(problem, mesh),
+        initial_superficial(scene.fluid.initial.superficial) {
     resize(committed, problem.stencil);
     resize(candidate, problem.stencil);
   }
@@ -73,14 +80,16 @@ void VansSolver::Impl::warn_once() {
   if (report.closure_correction > 1e-2 && !warned_of_closure) {
     warned_of_closure = true;
     spdlog::warn(
-        "fluid: the flux closure moves {:.1e} of the largest flux; mass is exact, but the velocity is not: lower "
+        "fluid: the flux closure moves {:.1e} of the largest flux; mass is exact, but the velocity "
+        "is not: lower "
         "fluid.numerics.pressure_tolerance (now {:.1e})",
         report.closure_correction, problem.numerics.pressure_tolerance);
   }
   if (report.legacy_change > 0 && !warned_of_legacy) {
     warned_of_legacy = true;
     spdlog::warn(
-        "fluid: the legacy mass source still changes the fluxes by {:.1e} after fluid.numerics.legacy.iterations = {} "
+        "fluid: the legacy mass source still changes the fluxes by {:.1e} after "
+        "fluid.numerics.legacy.iterations = {} "
         "passes",
         report.legacy_change, problem.numerics.legacy.iterations);
   }
@@ -104,7 +113,8 @@ void VansSolver::start(std::span<const double> voidage) {
   for (int f = 0; f < s.faces; ++f) {
     const bool given = f >= s.internal_faces &&
                        self.problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure;
-    flux[f] = given ? self.fields.boundary.flux[f - s.internal_faces] : self.initial_superficial.dot(s.area[f]);
+    flux[f] = given ? self.fields.boundary.flux[f - s.internal_faces]
+                    : self.initial_superficial.dot(s.area[f]);
   }
   balance_outlets(self.problem, flux);
   for (int f = 0; f < s.faces; ++f) state.face_flux[f] = self.problem.fluid.density * flux[f];
@@ -116,7 +126,8 @@ void VansSolver::start(std::span<const double> voidage) {
   self.has_candidate = false;
 }
 
-void VansSolver::advance(const Window& window, const SolidsInput& solids, const Progress& progress) {
+void VansSolver::advance(const Window& window, const SolidsInput& solids,
+                         const Progress& progress) {
   Impl& self = *impl_;
   const FluidProblem& problem = self.problem;
   WindowFields& fields = self.fields;
@@ -146,7 +157,8 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids, const 
 }
 
 void VansSolver::commit() {
-  if (!impl_->has_candidate) throw NumericsError("fluid: there is no candidate to commit; advance must come first");
+  if (!impl_->has_candidate)
+    throw NumericsError("fluid: there is no candidate to commit; advance must come first");
   std::swap(impl_->committed, impl_->candidate);
   impl_->has_candidate = false;
 }

@@ -30,10 +30,10 @@ struct FluidState {
 
 /// How the last window went.
 struct FluidReport {
-  int iterations = 0;             ///< of the pressure solver, all correctors
-  int predictor_iterations = 0;   ///< of the momentum predictor
-  int legacy_iterations = 0;      ///< passes over the lagged mass source (continuity: legacy)
-  double legacy_change = 0;       ///< last relative change of a flux where those passes ran out, else 0
+  int iterations = 0;            ///< of the pressure solver, all correctors
+  int predictor_iterations = 0;  ///< of the momentum predictor
+  int legacy_iterations = 0;     ///< passes over the lagged mass source (continuity: legacy)
+  double legacy_change = 0;  ///< last relative change of a flux where those passes ran out, else 0
   double closure_correction = 0;  ///< largest flux change by the closure over the largest flux [-]
 };
 

@@ -9,10 +9,12 @@
 
 namespace fluxpact {
 
-/// Throws NumericsError naming field, cell, value and step unless 0 < ε <= 1 (one rounding above 1 passes).
+/// Throws NumericsError naming field, cell, value and step unless 0 < ε <= 1 (one rounding above 1
+/// passes).
 void check_voidage(const Stencil& stencil, std::span<const double> voidage, std::int64_t step);
 
-/// check_voidage, and: B finite and not negative, S finite, a value for every cell, a window longer than zero.
+/// check_voidage, and: B finite and not negative, S finite, a value for every cell, a window longer
+/// than zero.
 void check_window(const Stencil& stencil, const Window& window, const SolidsInput& solids);
 
 /// Throws NumericsError naming field, cell or face, and step if the state is not finite.

@@ -27,10 +27,12 @@ void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage
   if (problem.numerics.convection != Convection::upwind || !s.orthogonal) {
     gradient(s, problem.gradient, w.velocity, w.jump, w.velocity_gradient);
   }
-  transport_force(s, w.momentum.faces, problem.numerics.convection, w.velocity, w.jump, w.velocity_gradient, w.force);
+  transport_force(s, w.momentum.faces, problem.numerics.convection, w.velocity, w.jump,
+                  w.velocity_gradient, w.force);
   for (int cell = 0; cell < s.cells; ++cell) {
     w.superficial[cell] = voidage[cell] * w.velocity[cell];
-    w.specific_force[cell] = (w.force[cell] + w.momentum.source[cell]) / (voidage[cell] * s.volume[cell]);
+    w.specific_force[cell] =
+        (w.force[cell] + w.momentum.source[cell]) / (voidage[cell] * s.volume[cell]);
   }
   boundary_jump(s, problem.conditions, w.boundary.superficial, w.superficial, w.jump);
   gradient(s, problem.gradient, w.superficial, w.jump, w.superficial_gradient);
@@ -46,7 +48,8 @@ void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage
 /// Pressure for the source in hand, and the flux that it drives.
 void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
-  assemble_pressure_rhs(s, problem.conditions, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
+  assemble_pressure_rhs(s, problem.conditions, w.faces, w.face_scale, w.source, w.explicit_part,
+                        w.rhs);
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
   std::ranges::copy(w.explicit_part, w.flux.begin());
@@ -60,33 +63,41 @@ double largest(std::span<const double> values) {
 }
 
 /// Repeat the pressure solve with the mass source of the fluxes before until they settle.
-void solve_legacy_continuity(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                             std::span<const double> voidage, WindowFields& w, FluidReport& report) {
+void solve_legacy_continuity(const FluidProblem& problem, const FluidState& old_state,
+                             const Window& window, std::span<const double> voidage, WindowFields& w,
+                             FluidReport& report) {
   const Stencil& s = problem.stencil;
   double change = 0;
   for (int pass = 0; pass < problem.numerics.legacy.iterations; ++pass) {
     for (int f = 0; f < s.faces; ++f) w.interstitial_flux[f] = w.flux[f] * w.face_scale[f];
-    reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient, w.interstitial);
-    legacy_source(s, old_state.voidage, voidage, w.voidage_gradient, w.interstitial, window.length, w.source);
+    reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient,
+                w.interstitial);
+    legacy_source(s, old_state.voidage, voidage, w.voidage_gradient, w.interstitial, window.length,
+                  w.source);
     std::ranges::copy(w.flux, w.flux_before.begin());
     solve_continuity(problem, w, report);
     ++report.legacy_iterations;
     change = 0;
-    for (int f = 0; f < s.faces; ++f) change = std::max(change, std::abs(w.flux[f] - w.flux_before[f]));
+    for (int f = 0; f < s.faces; ++f)
+      change = std::max(change, std::abs(w.flux[f] - w.flux_before[f]));
     if (change <= problem.numerics.legacy.tolerance * largest(w.flux)) return;
   }
   report.legacy_change = std::max(report.legacy_change, change / largest(w.flux));
 }
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
-void close(const FluidProblem& problem, const Window& window, WindowFields& w, FluidReport& report) {
-  for (std::size_t f = 0; f < w.flux.size(); ++f) w.mass_flux[f] = problem.fluid.density * w.flux[f];
+void close(const FluidProblem& problem, const Window& window, WindowFields& w,
+           FluidReport& report) {
+  for (std::size_t f = 0; f < w.flux.size(); ++f)
+    w.mass_flux[f] = problem.fluid.density * w.flux[f];
   if (problem.continuity == Continuity::legacy) return;
   const double correction = close_fluxes(w.tree, problem.stencil, w.storage, w.mass_flux);
   // In a fluid at rest all fluxes are rounding, and so is their correction: no error of the solver.
-  const double rounding = 1e-13 * problem.fluid.density * largest(problem.stencil.volume) / window.length;
+  const double rounding =
+      1e-13 * problem.fluid.density * largest(problem.stencil.volume) / window.length;
   report.closure_correction = correction > rounding ? correction / largest(w.mass_flux) : 0.0;
-  for (std::size_t f = 0; f < w.flux.size(); ++f) w.flux[f] = w.mass_flux[f] / problem.fluid.density;
+  for (std::size_t f = 0; f < w.flux.size(); ++f)
+    w.flux[f] = w.mass_flux[f] / problem.fluid.density;
 }
 
 }  // namespace
@@ -99,17 +110,21 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   problem.fluid = {scene.fluid.density, scene.fluid.viscosity, scene.fluid.numerics.convection};
   problem.numerics = scene.fluid.numerics;
   problem.continuity = scene.coupling.continuity;
-  problem.gradient = gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false));
+  problem.gradient =
+      gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false));
   problem.reconstruction = reconstruction_coefficients(problem.stencil);
   if (!problem.stencil.orthogonal) {
-    problem.pressure_gradient = gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, true));
+    problem.pressure_gradient =
+        gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, true));
   }
   if (problem.continuity == Continuity::legacy) {
     for (const FluidRegion& region : problem.regions.list) {
       if (region.open) continue;
       throw ConfigError(
-          "coupling.continuity: legacy does not balance inflow, outflow and storage, so every part of the domain needs "
-          "a patch of type pressure to take the difference; give one in fluid.boundaries or choose 'conservative'");
+          "coupling.continuity: legacy does not balance inflow, outflow and storage, so every part "
+          "of the domain needs "
+          "a patch of type pressure to take the difference; give one in fluid.boundaries or choose "
+          "'conservative'");
     }
   }
   return problem;
@@ -128,12 +143,13 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   matrix.diagonal.assign(cell_count, 0.0);
   matrix.coupling.assign(static_cast<std::size_t>(s.internal_faces), 0.0);
   for (auto* values : {&storage, &source, &pressure, &rhs}) values->assign(cell_count, 0.0);
-  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux, &face_voidage, &interstitial_flux, &flux_before}) {
+  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux, &face_voidage,
+                       &interstitial_flux, &flux_before}) {
     values->assign(face_count, 0.0);
   }
   face_scale.assign(face_count, 1.0);
-  for (auto* values : {&old_superficial, &superficial, &velocity, &velocity_before, &force, &specific_force, &closing_gradient,
-                       &voidage_gradient, &interstitial}) {
+  for (auto* values : {&old_superficial, &superficial, &velocity, &velocity_before, &force,
+                       &specific_force, &closing_gradient, &voidage_gradient, &interstitial}) {
     values->assign(cell_count, Vector3::Zero());
   }
   if (!s.orthogonal) pressure_slope.assign(cell_count, Vector3::Zero());
@@ -156,15 +172,18 @@ void open_window(const FluidProblem& problem, const FluidState& old_state, const
   }
   for (int f = 0; f < s.faces; ++f) w.old_flux[f] = old_state.face_flux[f] / density;
   if (problem.continuity == Continuity::conservative) {
-    settle_closed_regions(s, problem.regions, w.boundary.flux, density, window.length, window.step, w.storage);
+    settle_closed_regions(s, problem.regions, w.boundary.flux, density, window.length, window.step,
+                          w.storage);
     for (int cell = 0; cell < s.cells; ++cell) w.source[cell] = -w.storage[cell] / density;
   } else {
     legacy_face_voidage(s, solids.voidage, w.face_voidage);
     legacy_voidage_gradient(s, w.face_voidage, w.voidage_gradient);
     for (int f = 0; f < s.faces; ++f) w.face_scale[f] = 1 / w.face_voidage[f];
   }
-  assemble_momentum(s, problem.conditions, problem.fluid, old_state, solids, window.length, w.momentum);
-  assemble_faces(s, problem.conditions, w.momentum, solids.voidage, w.old_flux, density, window.length, w.faces);
+  assemble_momentum(s, problem.conditions, problem.fluid, old_state, solids, window.length,
+                    w.momentum);
+  assemble_faces(s, problem.conditions, w.momentum, solids.voidage, w.old_flux, density,
+                 window.length, w.faces);
   assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
   w.pressure_solver->setup(w.matrix);
 }
@@ -174,7 +193,8 @@ void correct(const FluidProblem& problem, const FluidState& old_state, const Win
   const Stencil& s = problem.stencil;
   evaluate_cells(problem, voidage, w);
   explicit_flux(s, problem.conditions, w.boundary, w.faces,
-                {w.specific_force, w.superficial, w.superficial_gradient, w.flux, w.pressure_slope}, w.explicit_part);
+                {w.specific_force, w.superficial, w.superficial_gradient, w.flux, w.pressure_slope},
+                w.explicit_part);
   if (problem.continuity == Continuity::conservative) {
     solve_continuity(problem, w, report);
   } else {
@@ -184,23 +204,27 @@ void correct(const FluidProblem& problem, const FluidState& old_state, const Win
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= voidage[cell];
-  close_momentum(s, w.momentum, voidage, w.force, w.velocity_before, w.velocity, w.closing_gradient);
+  close_momentum(s, w.momentum, voidage, w.force, w.velocity_before, w.velocity,
+                 w.closing_gradient);
 }
 
 void pre_correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
                  std::span<const double> voidage, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
-  for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] = w.old_superficial[cell] / voidage[cell];
+  for (int cell = 0; cell < s.cells; ++cell)
+    w.velocity[cell] = w.old_superficial[cell] / voidage[cell];
   std::ranges::copy(w.old_flux, w.flux.begin());
   correct(problem, old_state, window, voidage, false, w, report);
 }
 
-void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& w, FluidReport& report) {
+void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& w,
+             FluidReport& report) {
   const Stencil& s = problem.stencil;
-  // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred parts included.
+  // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred
+  // parts included.
   std::swap(w.velocity, w.velocity_before);
-  report.predictor_iterations +=
-      predict_velocity(s, w.momentum, voidage, w.force, w.closing_gradient, w.predictor, w.velocity);
+  report.predictor_iterations += predict_velocity(s, w.momentum, voidage, w.force,
+                                                  w.closing_gradient, w.predictor, w.velocity);
   if (rebuilt_share(s) == 1) return;
   for (int cell = 0; cell < s.cells; ++cell) w.superficial[cell] = voidage[cell] * w.velocity[cell];
   predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);

@@ -1,7 +1,7 @@
 // One window of the fluid, piece by piece: what `VansSolver::advance` puts in order.
 //
-// Plain arrays, sized once; the functions fill them from left to right: coefficients -> pre-pass -> predictor ->
-// correctors -> closed fluxes.
+// Plain arrays, sized once; the functions fill them from left to right: coefficients -> pre-pass ->
+// predictor -> correctors -> closed fluxes.
 #pragma once
 
 #include <memory>
@@ -42,51 +42,53 @@ struct WindowFields {
   MomentumSolver predictor;
   std::unique_ptr<PressureSolver> pressure_solver;
 
-  std::vector<double> storage;          ///< ρ V Δε/Δt [kg/s]
-  std::vector<double> source;           ///< right-hand side of continuity [m³/s]
-  std::vector<double> old_flux;         ///< φ^n [m³/s], one a face
-  std::vector<double> flux;             ///< φ of the last corrector [m³/s], one a face
-  std::vector<double> explicit_part;    ///< [m³/s], one a face
-  std::vector<double> mass_flux;        ///< Φ [kg/s], one a face
-  std::vector<double> pressure;         ///< p − level [Pa]
+  std::vector<double> storage;        ///< ρ V Δε/Δt [kg/s]
+  std::vector<double> source;         ///< right-hand side of continuity [m³/s]
+  std::vector<double> old_flux;       ///< φ^n [m³/s], one a face
+  std::vector<double> flux;           ///< φ of the last corrector [m³/s], one a face
+  std::vector<double> explicit_part;  ///< [m³/s], one a face
+  std::vector<double> mass_flux;      ///< Φ [kg/s], one a face
+  std::vector<double> pressure;       ///< p − level [Pa]
   std::vector<double> rhs;
-  std::vector<Vector3> old_superficial; ///< ε^n u^n
-  std::vector<Vector3> superficial;     ///< ε u of the last corrector
-  std::vector<Vector3> velocity;        ///< u of the last corrector
-  std::vector<Vector3> velocity_before; ///< u from which it started
-  std::vector<Vector3> force;           ///< C(velocity_before) [N]
-  std::vector<Vector3> specific_force;  ///< (C + S)/(ε V) [N/m³]
-  std::vector<Vector3> closing_gradient; ///< ∇p that closes each cell's momentum [Pa/m]
-  std::vector<Vector3> pressure_slope;  ///< least-squares ∇p [Pa/m], non-orthogonal meshes only
+  std::vector<Vector3> old_superficial;   ///< ε^n u^n
+  std::vector<Vector3> superficial;       ///< ε u of the last corrector
+  std::vector<Vector3> velocity;          ///< u of the last corrector
+  std::vector<Vector3> velocity_before;   ///< u from which it started
+  std::vector<Vector3> force;             ///< C(velocity_before) [N]
+  std::vector<Vector3> specific_force;    ///< (C + S)/(ε V) [N/m³]
+  std::vector<Vector3> closing_gradient;  ///< ∇p that closes each cell's momentum [Pa/m]
+  std::vector<Vector3> pressure_slope;    ///< least-squares ∇p [Pa/m], non-orthogonal meshes only
   std::vector<Matrix3> velocity_gradient;
   std::vector<Matrix3> superficial_gradient;
-  std::vector<Vector3> jump;            ///< one a boundary face
-  std::vector<double> pressure_jump;    ///< one a boundary face
+  std::vector<Vector3> jump;          ///< one a boundary face
+  std::vector<double> pressure_jump;  ///< one a boundary face
 
   // continuity: legacy
-  std::vector<double> face_scale;       ///< one a face: 1, or 1/ε_f
-  std::vector<double> face_voidage;     ///< one a face
-  std::vector<double> interstitial_flux; ///< Λ/ρ [m³/s], one a face
-  std::vector<double> flux_before;      ///< one a face
+  std::vector<double> face_scale;         ///< one a face: 1, or 1/ε_f
+  std::vector<double> face_voidage;       ///< one a face
+  std::vector<double> interstitial_flux;  ///< Λ/ρ [m³/s], one a face
+  std::vector<double> flux_before;        ///< one a face
   std::vector<Vector3> voidage_gradient;
-  std::vector<Vector3> interstitial;    ///< u rebuilt from Λ
+  std::vector<Vector3> interstitial;  ///< u rebuilt from Λ
 };
 
 /// Everything that stays the same in all correctors of a window.
 void open_window(const FluidProblem& problem, const FluidState& old_state, const Window& window,
                  const SolidsInput& solids, WindowFields& fields);
 
-/// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With `last` the fluxes
-/// are closed before the velocity is rebuilt from them.
+/// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With
+/// `last` the fluxes are closed before the velocity is rebuilt from them.
 void correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
              std::span<const double> voidage, bool last, WindowFields& fields, FluidReport& report);
 
-/// Before the predictor: start from ε^n u^n/ε^{n+1} and find the pressure that goes with the new voidage and drag. A cell
-/// that leaves the bed would otherwise keep the bed's gradient without its drag, and shoot up.
+/// Before the predictor: start from ε^n u^n/ε^{n+1} and find the pressure that goes with the new
+/// voidage and drag. A cell that leaves the bed would otherwise keep the bed's gradient without its
+/// drag, and shoot up.
 void pre_correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
                  std::span<const double> voidage, WindowFields& fields, FluidReport& report);
 
 /// Implicit momentum with the gradient in hand.
-void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& fields, FluidReport& report);
+void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& fields,
+             FluidReport& report);
 
 }  // namespace fluxpact

@@ -90,10 +90,9 @@ class Run {
       const StepResult result = run_step(coupling_, window, state_);
       if (!result.committed) {
         throw ConservationError(
-            "step {}: {}; stopped at the last committed window, t = {} s. To go on all the same "
-            "set "
+            "{} Stopped at the last committed window, t = {} s; to go on all the same set "
             "coupling.audit.on_violation: warn",
-            step, describe(result.verdict, result.row), moment_.time);
+            describe(result.verdict, result.row), moment_.time);
       }
       warn_of_violation(result);
       moment_ = {step, window.end()};
@@ -108,9 +107,7 @@ class Run {
 
   void warn_of_violation(const StepResult& result) {
     if (result.verdict.pass) return;
-    if (violations_++ == 0)
-      spdlog::warn("step {}: {} (said once)", result.row.step,
-                   describe(result.verdict, result.row));
+    if (violations_++ == 0) spdlog::warn("{} (said once)", describe(result.verdict, result.row));
     summary_.count_violation();
   }
 

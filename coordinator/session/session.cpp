@@ -20,6 +20,9 @@ Milliseconds milliseconds(double seconds) {
   return Milliseconds(static_cast<std::int64_t>(1000 * seconds));
 }
 
+/// A process that has ended may have said why: how long its last message can be on its way.
+constexpr Milliseconds last_words{300};
+
 /// A private folder (mode 0700) for the socket.
 std::filesystem::path make_run_directory() {
   std::string name = (std::filesystem::temp_directory_path() / "fluxpact-XXXXXX").string();
@@ -240,10 +243,11 @@ void Session::take_message(Milliseconds patience) {
     if (each.process) watched.push_back(each.process->descriptor());
   }
   auto wakeup = channel_.wait(watched, patience);
-  if (!wakeup.arrival) {
-    if (!wakeup.ready.empty()) check_processes();
-    return;
+  if (!wakeup.arrival && !wakeup.ready.empty()) {
+    wakeup = channel_.wait({}, last_words);
+    if (!wakeup.arrival) check_processes();
   }
+  if (!wakeup.arrival) return;
   Peer* sender = find(wakeup.arrival->peer);
   if (sender == nullptr) {
     take_from_stranger(*wakeup.arrival);

@@ -198,7 +198,7 @@ int largest_packing(const PackingBox& box, int count, double diameter, std::uint
   // No random packing is denser than 0.64; below that, in steps that end after a few tries.
   int tried = std::min(count - 1, static_cast<int>(0.64 * box.volume() / sphere));
   while (tried > 1 && !random_packing(box, tried, diameter, seed)) {
-    tried -= std::max(1, tried / 50);
+    tried -= std::max(1, tried / 25);
   }
   return std::max(tried, 1);
 }

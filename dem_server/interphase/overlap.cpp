@@ -43,9 +43,9 @@ double outside_piece(const PlaneCut& cut, double d, double t0, double t1) {
   return cut.whole * angle - cut.ball_third * bent;
 }
 
-// The triangle of the foot point and the edge from t0 to t1 (t0 < t1) at signed distance d.
+// The triangle of the foot point and the edge from t0 to t1 (t0 < t1) at signed distance d. It is
+// flat for d = 0: the angles of its pieces outside are then equal, and cancel.
 double edge_share(const PlaneCut& cut, double d, double t0, double t1) {
-  if (d == 0) return 0;  // the limit of both sides: the triangle is flat
   const double distance = std::abs(d);
   const double chord_squared = cut.disk_squared - d * d;
   if (chord_squared <= 0) return std::copysign(1.0, d) * outside_piece(cut, distance, t0, t1);

@@ -12,7 +12,7 @@ struct Transition {
 };
 
 using enum SessionState;
-constexpr std::array<Transition, 10> transitions{{
+constexpr std::array<Transition, 9> transitions{{
     {greeting, MessageType::welcome, welcomed},
     {greeting, MessageType::reject, closed},
     {welcomed, MessageType::configure, configured},
@@ -22,8 +22,6 @@ constexpr std::array<Transition, 10> transitions{{
     {committed, MessageType::snapshot, committed},
     {candidate, MessageType::commit, committed},
     {candidate, MessageType::rollback, committed},
-    {candidate, MessageType::advance,
-     candidate},  // a repeated window: the old candidate is forgotten
 }};
 
 }  // namespace

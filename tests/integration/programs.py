@@ -40,6 +40,7 @@ def small_bed():
                 "jet": {"type": "velocity", "superficial": [0, 0, 3.0]},
                 "background": {"type": "velocity", "superficial": [0, 0, 1.0]},
                 "outlet": {"type": "pressure", "value": 0},
+                "walls": {"type": "wall"},
             },
         },
         "particles": {

@@ -20,12 +20,14 @@ void add_state(const FluidState& state, Fields& out) {
 Identity NativeFluid::identity() const {
   return {Role::fluid,
           "native",
-          {field::face_flux, field::velocity, field::pressure, field::pressure_gradient, field::impulse_taken},
+          {field::face_flux, field::velocity, field::pressure, field::pressure_gradient,
+           field::impulse_taken},
           {field::voidage, field::drag_coefficient, field::drag_source}};
 }
 
 VansSolver& NativeFluid::solver() {
-  if (!solver_) throw ProtocolError("fluid: called before configure; the scene and the mesh must come first");
+  if (!solver_)
+    throw ProtocolError("fluid: called before configure; the scene and the mesh must come first");
   return *solver_;
 }
 
@@ -40,15 +42,17 @@ void NativeFluid::start(const Fields& in, Fields& out) {
   add_state(solver().committed(), out);
 }
 
-void NativeFluid::advance(const Window& window, const Fields& in, Fields& out, const Progress& progress) {
+void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
+                          const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  const SolidsInput solids{in.scalars(field::voidage, cells_), in.scalars(field::drag_coefficient, cells_),
+  const SolidsInput solids{in.scalars(field::voidage, cells_),
+                           in.scalars(field::drag_coefficient, cells_),
                            in.vectors(field::drag_source, cells_)};
   solver().advance(window, solids, progress);
   const FluidState& state = solver().candidate();
   for (int cell = 0; cell < cells_; ++cell) {
-    impulse_[cell] =
-        window.length * (solids.drag_source[cell] - solids.drag_coefficient[cell] * state.velocity[cell]);
+    impulse_[cell] = window.length * (solids.drag_source[cell] -
+                                      solids.drag_coefficient[cell] * state.velocity[cell]);
   }
   add_state(state, out);
   out.add(field::impulse_taken, std::span<const Vector3>(impulse_));

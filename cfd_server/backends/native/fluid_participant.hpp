@@ -17,9 +17,10 @@ class NativeFluid final : public Participant {
   /// in: voidage. out: velocity, pressure, pressure_gradient, face_flux.
   void start(const Fields& in, Fields& out) override;
 
-  /// in: voidage, drag_coefficient, drag_source. out: face_flux, velocity, pressure, pressure_gradient,
-  /// impulse_taken; numbers solver_iterations, closure_correction, wall_seconds.
-  void advance(const Window& window, const Fields& in, Fields& out, const Progress& progress) override;
+  /// in: voidage, drag_coefficient, drag_source. out: face_flux, velocity, pressure,
+  /// pressure_gradient, impulse_taken; numbers solver_iterations, closure_correction, wall_seconds.
+  void advance(const Window& window, const Fields& in, Fields& out,
+               const Progress& progress) override;
   void commit() override;
   void rollback() override;
 

@@ -1,4 +1,5 @@
-// A fluid scene on a box, and the solids that drive it: what the tests of the fluid solver start from.
+// A fluid scene on a box, and the solids that drive it: what the tests of the fluid solver start
+// from.
 #pragma once
 
 #include <cmath>
@@ -25,9 +26,7 @@ struct FluidCase {
     scene.fluid.numerics.pressure_tolerance = 1e-12;
   }
 
-  void make_mesh() {
-    mesh = make_box(scene.fluid.mesh);
-  }
+  void make_mesh() { mesh = make_box(scene.fluid.mesh); }
 
   void side(const std::string& name, Side where, const BoundarySettings& condition) {
     scene.fluid.mesh.patches.push_back({name, {where, {}}});
@@ -85,7 +84,8 @@ inline void run_window(VansSolver& solver, const Solids& solids, int step, doubl
   solver.commit();
 }
 
-/// Largest |ρ V Δε/Δt + Σ Φ| over ρ V/Δt, and inflow − outflow − storage over the inflow, as an audit would see them.
+/// Largest |ρ V Δε/Δt + Σ Φ| over ρ V/Δt, and inflow − outflow − storage over the inflow, as an
+/// audit would see them.
 struct Balance {
   double largest_residual = 0;
   double relative_imbalance = 0;
@@ -98,7 +98,8 @@ inline Balance balance_of(const Mesh& mesh, double density, const std::vector<do
   std::vector<CompensatedSum> residual(mesh.cell_volumes.size());
   CompensatedSum storage;
   for (int cell = 0; cell < mesh.cells(); ++cell) {
-    const double stored = density * mesh.cell_volumes[cell] * (state.voidage[cell] - old_voidage[cell]) / window;
+    const double stored =
+        density * mesh.cell_volumes[cell] * (state.voidage[cell] - old_voidage[cell]) / window;
     residual[cell].add(stored);
     storage.add(stored);
   }
@@ -115,11 +116,13 @@ inline Balance balance_of(const Mesh& mesh, double density, const std::vector<do
   }
   Balance balance{0, 0, in.value(), out.value()};
   for (int cell = 0; cell < mesh.cells(); ++cell) {
-    balance.largest_residual = std::max(balance.largest_residual, std::abs(residual[cell].value()) /
-                                                                      (density * mesh.cell_volumes[cell] / window));
+    balance.largest_residual =
+        std::max(balance.largest_residual,
+                 std::abs(residual[cell].value()) / (density * mesh.cell_volumes[cell] / window));
   }
   if (balance.inflow > 0) {
-    balance.relative_imbalance = (balance.inflow - balance.outflow - storage.value()) / balance.inflow;
+    balance.relative_imbalance =
+        (balance.inflow - balance.outflow - storage.value()) / balance.inflow;
   }
   return balance;
 }

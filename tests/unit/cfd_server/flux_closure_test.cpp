@@ -1,4 +1,5 @@
-// Continuity of every cell and of the whole, at any tolerance of the pressure solver and on any mesh.
+// Continuity of every cell and of the whole, at any tolerance of the pressure solver and on any
+// mesh.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -30,7 +31,8 @@ void randomise(Solids& solids, const Mesh& mesh, std::mt19937& random) {
   for (int cell = 0; cell < mesh.cells(); ++cell) {
     solids.voidage[cell] = voidage(random);
     solids.drag[cell] = drag(random) * mesh.cell_volumes[cell];
-    solids.source[cell] = solids.drag[cell] * Vector3(velocity(random), velocity(random), velocity(random));
+    solids.source[cell] =
+        solids.drag[cell] * Vector3(velocity(random), velocity(random), velocity(random));
   }
 }
 
@@ -58,7 +60,8 @@ TEST_P(Closure, is_exact_at_any_solver_tolerance) {
     const std::vector<double> before = solver.committed().voidage;
     randomise(solids, c.mesh, random);
     run_window(solver, solids, step, window);
-    const Balance balance = balance_of(c.mesh, c.scene.fluid.density, before, solver.committed(), window);
+    const Balance balance =
+        balance_of(c.mesh, c.scene.fluid.density, before, solver.committed(), window);
     // Each cell's sum has a dozen roundings of fluxes up to ~10 ρV/Δt.
     EXPECT_LE(balance.largest_residual, 1e-13) << "step " << step;
     EXPECT_LE(std::abs(balance.relative_imbalance), 1e-13) << "step " << step;
@@ -114,9 +117,11 @@ TEST(ClosedRegion, accepts_solids_that_move_within_it) {
       solids.voidage[b] -= amount;
     }
     run_window(solver, solids, step, 1e-3);
-    const Balance balance = balance_of(c.mesh, c.scene.fluid.density, before, solver.committed(), 1e-3);
+    const Balance balance =
+        balance_of(c.mesh, c.scene.fluid.density, before, solver.committed(), 1e-3);
     EXPECT_LE(balance.largest_residual, 1e-13) << "step " << step;
-    for (int f = c.mesh.internal_faces(); f < c.mesh.faces(); ++f) EXPECT_EQ(solver.committed().face_flux[f], 0);
+    for (int f = c.mesh.internal_faces(); f < c.mesh.faces(); ++f)
+      EXPECT_EQ(solver.committed().face_flux[f], 0);
   }
 }
 
@@ -134,7 +139,8 @@ TEST(ClosedRegion, refuses_a_changing_sum_and_says_why) {
     const std::string text = error.what();
     EXPECT_NE(text.find("step 4"), std::string::npos) << text;
     EXPECT_NE(text.find("no pressure outlet"), std::string::npos) << text;
-    EXPECT_NE(text.find("0.00012"), std::string::npos) << text;  // 1.2 kg/m³ · 1e-6 m³ · 0.1 / 1e-3 s
+    EXPECT_NE(text.find("0.00012"), std::string::npos)
+        << text;  // 1.2 kg/m³ · 1e-6 m³ · 0.1 / 1e-3 s
   }
 }
 
@@ -147,7 +153,8 @@ TEST(ClosedRegion, needs_balanced_inlets) {
   VansSolver balanced(c.scene, c.mesh);
   balanced.start(solids.voidage);
   run_window(balanced, solids, 1, 1e-3);
-  EXPECT_LE(balance_of(c.mesh, 1.2, solids.voidage, balanced.committed(), 1e-3).largest_residual, 1e-13);
+  EXPECT_LE(balance_of(c.mesh, 1.2, solids.voidage, balanced.committed(), 1e-3).largest_residual,
+            1e-13);
   c.scene.fluid.boundaries["out"] = superficial_inlet({1.001, 0, 0});
   VansSolver unbalanced(c.scene, c.mesh);
   unbalanced.start(solids.voidage);

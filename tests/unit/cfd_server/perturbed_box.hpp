@@ -1,4 +1,5 @@
-// A box whose interior points are moved at random: non-orthogonal, skewed hexahedra with non-planar faces.
+// A box whose interior points are moved at random: non-orthogonal, skewed hexahedra with non-planar
+// faces.
 #pragma once
 
 #include <array>
@@ -10,8 +11,8 @@
 
 namespace fluxpact {
 
-/// Points inside the box move by up to `share` of the spacing of its cells; those at its ends stay, so a periodic pair
-/// still fits.
+/// Points inside the box move by up to `share` of the spacing of its cells; those at its ends stay,
+/// so a periodic pair still fits.
 inline Mesh perturbed(const Mesh& box, const Vector3& spacing, double share, unsigned seed) {
   MeshTopology topology = box;
   Vector3 lower = topology.points.front();
@@ -22,7 +23,8 @@ inline Mesh perturbed(const Mesh& box, const Vector3& spacing, double share, uns
   }
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> shift(-share, share);
-  // In a direction with one layer of cells nothing moves, and both ends of the layer move alike: one move a place.
+  // In a direction with one layer of cells nothing moves, and both ends of the layer move alike:
+  // one move a place.
   std::map<std::array<long, 3>, Vector3> moves;
   for (Vector3& point : topology.points) {
     std::array<long, 3> place{};

@@ -32,7 +32,8 @@ TEST(Column, passes_on_all_mass_through_a_voidage_jump) {
 }
 
 TEST(Column, loses_mass_as_calculated_with_the_legacy_continuity) {
-  // Only the two cells beside the jump have a gradient. There Λ_e (1 + k) = Λ_w (1 − k) with k = (ε_e − ε_w)/(2 ε_P).
+  // Only the two cells beside the jump have a gradient. There Λ_e (1 + k) = Λ_w (1 − k) with k =
+  // (ε_e − ε_w)/(2 ε_P).
   const auto ratio = [](double west, double own, double east) {
     const double k = (east - west) / (2 * own);
     return (1 - k) / (1 + k);
@@ -98,7 +99,8 @@ TEST(UniformBed, has_the_pressure_gradient_of_the_drag_law) {
   };
   for (int step = 1; step <= 300; ++step) {
     for (int cell = 0; cell < c.mesh.cells(); ++cell) {
-      solids.drag[cell] = exchange(solver.committed().velocity[cell].norm()) * c.mesh.cell_volumes[cell];
+      solids.drag[cell] =
+          exchange(solver.committed().velocity[cell].norm()) * c.mesh.cell_volumes[cell];
     }
     run_window(solver, solids, step, 1e-3);
   }
@@ -126,14 +128,16 @@ TEST(Inlets, jet_and_background_and_mass_flow_give_exactly_what_is_asked) {
   const auto sum = [&](const std::string& name) {
     const Patch& patch = *c.mesh.find_patch(name);
     CompensatedSum total;
-    for (int f = patch.first; f < patch.first + patch.size; ++f) total.add(solver.committed().face_flux[f]);
+    for (int f = patch.first; f < patch.first + patch.size; ++f)
+      total.add(solver.committed().face_flux[f]);
     return total.value();
   };
   // A dozen faces, each rounded a few times.
   EXPECT_NEAR(sum("jet") / (-1.2 * 5 * 0.02 * 0.02), 1, 1e-14);
   EXPECT_NEAR(sum("background") / (-1.2 * 0.5 * 0.08 * 0.02), 1, 1e-14);
   EXPECT_NEAR(sum("feed") / -3e-4, 1, 1e-14);
-  EXPECT_NEAR(sum("outlet") + sum("jet") + sum("background") + sum("feed"), 0, 1e-14 * sum("outlet"));
+  EXPECT_NEAR(sum("outlet") + sum("jet") + sum("background") + sum("feed"), 0,
+              1e-14 * sum("outlet"));
 }
 
 TEST(Inlets, interstitial_velocity_carries_the_voidage_of_the_cell) {
@@ -163,7 +167,8 @@ double largest_speed_at_rest(FluidCase& c, double outlet_pressure_level) {
   for (int step = 1; step <= 50; ++step) run_window(solver, solids, step, 1e-3);
   double largest = 0;
   for (const Vector3& u : solver.committed().velocity) largest = std::max(largest, u.norm());
-  for (const double p : solver.committed().pressure) EXPECT_NEAR(p, outlet_pressure_level, 1e-9 * 101325);
+  for (const double p : solver.committed().pressure)
+    EXPECT_NEAR(p, outlet_pressure_level, 1e-9 * 101325);
   return largest;
 }
 

@@ -1,4 +1,5 @@
-// Observed order of accuracy against exact solutions, and independence of the steady state from the window.
+// Observed order of accuracy against exact solutions, and independence of the steady state from the
+// window.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +27,8 @@ double mean_error(const Mesh& mesh, const Difference& difference) {
 
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
-/// Decaying vortices in a periodic box (Taylor & Green 1937): u = (sin x cos z, 0, −cos x sin z) e^{−2νk²t}.
+/// Decaying vortices in a periodic box (Taylor & Green 1937): u = (sin x cos z, 0, −cos x sin z)
+/// e^{−2νk²t}.
 double vortex_error(int n, Convection convection, double* pressure_error) {
   FluidCase c({n, 1, n}, {1, 0.1, 1});
   c.scene.fluid.density = 1;
@@ -40,12 +42,12 @@ double vortex_error(int n, Convection convection, double* pressure_error) {
     return Vector3(std::sin(two_pi * x.x()) * std::cos(two_pi * x.z()) * decay, 0,
                    -std::cos(two_pi * x.x()) * std::sin(two_pi * x.z()) * decay);
   };
-  // The scene starts at a uniform velocity: the vortices are held by the force that keeps them steady,
-  // so the state converges to them whatever it starts from.
+  // The scene starts at a uniform velocity: the vortices are held by the force that keeps them
+  // steady, so the state converges to them whatever it starts from.
   Solids solids(c.mesh);
   for (int cell = 0; cell < c.mesh.cells(); ++cell) {
-    solids.source[cell] =
-        c.mesh.cell_volumes[cell] * 2 * nu * two_pi * two_pi * velocity(c.mesh.cell_centres[cell], 0);
+    solids.source[cell] = c.mesh.cell_volumes[cell] * 2 * nu * two_pi * two_pi *
+                          velocity(c.mesh.cell_centres[cell], 0);
   }
   VansSolver solver(c.scene, c.mesh);
   solver.start(solids.voidage);
@@ -72,9 +74,11 @@ TEST(Order, is_two_for_held_vortices) {
     u.push_back(vortex_error(n, Convection::linear_upwind, &pressure_error));
     p.push_back(pressure_error);
   }
-  fmt::print("vortices, linear upwind: u {:.2e} {:.2e} {:.2e}, order {:.2f} {:.2f}; p {:.2e} {:.2e} {:.2e}, order {:.2f} {:.2f}\n",
-             u[0], u[1], u[2], order(u[0], u[1]), order(u[1], u[2]), p[0], p[1], p[2], order(p[0], p[1]),
-             order(p[1], p[2]));
+  fmt::print(
+      "vortices, linear upwind: u {:.2e} {:.2e} {:.2e}, order {:.2f} {:.2f}; p {:.2e} {:.2e} "
+      "{:.2e}, order {:.2f} {:.2f}\n",
+      u[0], u[1], u[2], order(u[0], u[1]), order(u[1], u[2]), p[0], p[1], p[2], order(p[0], p[1]),
+      order(p[1], p[2]));
   EXPECT_GE(order(u[1], u[2]), 1.9);
   EXPECT_GE(order(p[1], p[2]), 1.9);
 }
@@ -112,9 +116,10 @@ TEST(Order, is_nearly_kept_on_a_perturbed_mesh) {
   const double coarse = poiseuille_error(8, 0.15);
   const double fine = poiseuille_error(16, 0.15);
   const double finest = poiseuille_error(32, 0.15);
-  fmt::print("plane channel, points moved 15 %: {:.2e} {:.2e} {:.2e}, order {:.2f} {:.2f}\n", coarse, fine, finest,
-             order(coarse, fine), order(fine, finest));
-  EXPECT_GE(order(fine, finest), 1.3);  // skewness that does not shrink with the mesh costs part of an order
+  fmt::print("plane channel, points moved 15 %: {:.2e} {:.2e} {:.2e}, order {:.2f} {:.2f}\n",
+             coarse, fine, finest, order(coarse, fine), order(fine, finest));
+  EXPECT_GE(order(fine, finest),
+            1.5);  // skewness that does not shrink with the mesh may cost part of an order
 }
 
 TEST(SteadyState, does_not_depend_on_the_window) {
@@ -137,26 +142,29 @@ TEST(SteadyState, does_not_depend_on_the_window) {
     return solver.committed();
   };
   const FluidState slow = run(0.02, 1500);
-  const FluidState fast = run(0.002, 15000);
+  const FluidState fast = run(0.005, 6000);
   double difference = 0;
   double size = 0;
   for (std::size_t cell = 0; cell < slow.velocity.size(); ++cell) {
     difference = std::max(difference, (slow.velocity[cell] - fast.velocity[cell]).norm());
     size = std::max(size, slow.velocity[cell].norm());
   }
-  fmt::print("cavity: windows 0.02 and 0.002 s differ by {:.1e} of {:.2f} m/s\n", difference, size);
-  // Both are the fixed point of the same equations; limited by how far the iteration and the limiter settle.
+  fmt::print("cavity: windows 0.02 and 0.005 s differ by {:.1e} of {:.2f} m/s\n", difference, size);
+  // Both are the fixed point of the same equations; limited by how far the iteration and the
+  // limiter settle.
   EXPECT_LE(difference, 1e-6 * size);
 }
 
 TEST(UniformVelocity, is_kept_while_the_voidage_drifts_with_it) {
-  // ε(x − t) carried at u = 1 without drag: u = 1 and p = 0 is the exact solution. First order in time.
+  // ε(x − t) carried at u = 1 without drag: u = 1 and p = 0 is the exact solution. First order in
+  // time.
   const auto run = [](int n) {
     FluidCase c({n, 1, 1}, {1, 0.1, 0.1});
     c.scene.fluid.density = 1;
     c.scene.fluid.viscosity = 0;
     c.scene.fluid.mesh.periodic = {Axis::x, Axis::y, Axis::z};
-    // The start is a uniform superficial velocity; the mean flux of the exact solution is that of the mean voidage.
+    // The start is a uniform superficial velocity; the mean flux of the exact solution is that of
+    // the mean voidage.
     c.scene.fluid.initial.superficial = Vector3(0.7, 0, 0);
     c.make_mesh();
     const double window = 0.25 / n;
@@ -174,7 +182,8 @@ TEST(UniformVelocity, is_kept_while_the_voidage_drifts_with_it) {
     };
     VansSolver solver(c.scene, c.mesh);
     solver.start(voidage(0).voidage);
-    for (int step = 1; step <= 4 * n; ++step) run_window(solver, voidage(step * window), step, window);
+    for (int step = 1; step <= 4 * n; ++step)
+      run_window(solver, voidage(step * window), step, window);
     return mean_error(c.mesh, [&](int cell) { return solver.committed().velocity[cell].x() - 1; });
   };
   const double coarse = run(32);

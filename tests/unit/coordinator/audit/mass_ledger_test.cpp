@@ -121,7 +121,7 @@ TEST(MassLedger, gives_rate_and_mass_of_a_uniform_change) {
 TEST(MassLedger, finds_the_cell_of_one_wrong_flux) {
   Sample sample;
   constexpr double error = 1e-6;  // [kg/s] over fluxes of 1e-3
-  const auto boundary = static_cast<std::size_t>(sample.mesh.internal_faces() + 3);
+  const auto boundary = static_cast<std::size_t>(sample.mesh.internal_faces()) + 3;
   sample.flux[boundary] += error;
   const MassAudit audit = sample.audit();
   const int cell = sample.mesh.owner[boundary];

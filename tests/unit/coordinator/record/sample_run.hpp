@@ -20,7 +20,7 @@ inline Mesh sample_box(std::vector<Axis> periodic = {}) {
 /// The same mesh sheared: no lattice stands behind it any more.
 inline Mesh sample_sheared(std::vector<Axis> periodic = {}) {
   const Mesh box = sample_box(std::move(periodic));
-  MeshTopology topology = box;
+  MeshTopology topology = static_cast<const MeshTopology&>(box);
   for (Vector3& point : topology.points) point.x() += 0.25 * point.z();
   return with_geometry(std::move(topology));
 }

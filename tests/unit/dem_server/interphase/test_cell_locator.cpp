@@ -76,17 +76,39 @@ TEST(CellLocator, finds_points_on_the_surface_and_none_beyond) {
   }
 }
 
+TEST(CellLocator, finds_the_cell_in_a_graded_lattice) {
+  MeshTopology topology = box({1, 1, 1}, {9, 3, 4});
+  for (Vector3& point : topology.points) {
+    point.x() *= point.x();
+    point.z() = std::sqrt(point.z());
+  }
+  const Mesh mesh = with_geometry(std::move(topology));
+  ASSERT_TRUE(mesh.lattice);
+  const Located lattice(mesh);
+  const Located bins(without_lattice(mesh));
+  RandomPoints points;
+  for (int trial = 0; trial < 500; ++trial) {
+    const Vector3 x = points(0, 1);
+    EXPECT_EQ(lattice.locator.cell_of(x), bins.locator.cell_of(x));
+    EXPECT_NEAR(lattice.total({x, 0.1}), bins.total({x, 0.1}), 1e-12 * 60);  // cut-off of `parts`
+  }
+}
+
 TEST(CellLocator, finds_the_cell_of_oblique_and_of_warped_cells) {
   const Mesh unit = box({1, 1, 1}, {4, 5, 6});
   for (const Mesh& mesh : {sheared(unit), warped(unit, 1.0 / 6)}) {
     const Located located(mesh);
     RandomPoints points;
-    for (int trial = 0; trial < 500; ++trial) {
-      // A ball of 1e-4 about a point of the cell it is found in has at least some of itself there.
-      const Vector3 u = points(0, 1);
-      const Vector3 x = mesh.cell_centres[trial % 120] + 0.04 * (u - Vector3::Constant(0.5));
-      EXPECT_EQ(located.locator.cell_of(x), trial % 120);
+    int inside = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+      const Vector3 x = points(0, 1);
+      const int cell = located.locator.cell_of(x);
+      if (cell < 0) continue;  // the sheared box leaves parts of the unit cube empty
+      ++inside;
+      // A speck about the point is wholly in that cell, unless a face is nearer than 1e-7.
+      EXPECT_NEAR(located.shapes.overlap(cell, {x, 1e-7}), ball_volume(1e-7), 1e-6 * 1e-21);
     }
+    EXPECT_GT(inside, 1000);
   }
 }
 

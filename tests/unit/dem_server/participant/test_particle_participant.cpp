@@ -2,91 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <random>
 
-#include "free_flight.hpp"
+#include "bench.hpp"
 #include "proto/base/errors.hpp"
-#include "proto/mesh/box.hpp"
-#include "proto/participant/field_names.hpp"
 
 namespace fluxpact {
 namespace {
 
-const Progress quiet = [] {};
-
-/// A scene of one box and a fluid whose fields the test writes itself.
-struct Bench {
-  explicit Bench(std::array<int, 3> cells = {3, 3, 3}) {
-    scene.scene.gravity = {0, 0, -9.81};
-    scene.coupling.window = 1e-3;
-    scene.particles.time_step = 2.5e-4;
-    scene.particles.numerics.threads = 2;
-    scene.fluid.density = 1.2;
-    scene.fluid.viscosity = 1.8e-5;
-    scene.fluid.mesh.box = {{0, 0, 0}, {0.3, 0.3, 0.3}, cells};
-    scene.fluid.mesh.periodic = {Axis::x, Axis::y, Axis::z};
-    scene.interphase.drag = DragLaw::stokes;
-    mesh = make_box(scene.fluid.mesh);
-    velocity.assign(mesh.cell_volumes.size(), Vector3::Zero());
-    gradient.assign(mesh.cell_volumes.size(), Vector3::Zero());
-  }
-
-  std::unique_ptr<ParticleParticipant> take_part(const ParticleState& initial, bool held = false) {
-    auto side = std::make_unique<ParticleParticipant>("test", [&, held, initial](const Scene& s,
-                                                                                 const Mesh&) {
-      return std::make_unique<FreeFlight>(initial, s.scene.gravity, Vector3::Constant(0.3), held);
-    });
-    side->configure(scene, mesh);
-    return side;
-  }
-
-  Fields fluid() const {
-    Fields in;
-    in.add(field::velocity, velocity);
-    in.add(field::pressure_gradient, gradient);
-    return in;
-  }
-  Window window(std::int64_t step) const {
-    const double length = scene.coupling.window;
-    return {step, static_cast<double>(step - 1) * length, length};
-  }
-
-  Scene scene;
-  Mesh mesh;
-  std::vector<Vector3> velocity;
-  std::vector<Vector3> gradient;
-};
-
-ParticleState cloud() {
-  std::mt19937_64 random(21);
-  std::uniform_real_distribution<double> place(0, 0.3);
-  ParticleState particles;
-  for (int i = 0; i < 60; ++i) {
-    particles.id.push_back(i + 1);
-    particles.position.emplace_back(place(random), place(random), place(random));
-    particles.velocity.emplace_back(place(random), place(random), place(random));
-    particles.spin.emplace_back(Vector3::Zero());
-    particles.radius.push_back(0.004 + 0.02 * place(random));
-    particles.density.push_back(100);
-    particles.material.push_back(0);
-  }
-  return particles;
-}
-
-std::map<std::string, std::vector<double>> copy(const Fields& fields) {
-  std::map<std::string, std::vector<double>> all;
-  for (const FieldView& view : fields.views()) {
-    all[view.name] = {view.values.begin(), view.values.end()};
-  }
-  for (const auto& [name, value] : fields.numbers()) {
-    if (name != field::wall_seconds) all[name] = {value};
-  }
-  return all;
-}
+using testing_bench::Bench;
+using testing_bench::cloud;
+using testing_bench::copy;
+using testing_bench::quiet;
 
 Vector3 sum(std::span<const Vector3> values) {
   Vector3 total = Vector3::Zero();
@@ -242,6 +170,27 @@ TEST(ParticleParticipant, hands_over_the_momentum_that_the_fluid_lost_the_window
   }
 }
 
+TEST(ParticleParticipant, gives_the_impulse_where_the_fluid_was_told_of_it) {
+  Bench bench;
+  bench.scene.interphase.voidage = VoidageMap::centroid;
+  bench.scene.scene.gravity.setZero();
+  ParticleState bullet = one_sphere({0.05, 0.15, 0.15}, 1e-3, 2500);
+  bullet.velocity[0] = {100, 0, 0};  // a cell a window: 12, 13, 14, 12, ...
+  const auto side = bench.take_part(bullet);
+  Fields begin;
+  side->start({}, begin);
+  for (int step = 1; step <= 4; ++step) {
+    Fields out;
+    side->advance(bench.window(step), bench.fluid(), out, quiet);
+    const auto given = out.vectors(field::impulse_given, 27);
+    for (int c = 0; c < 27; ++c) {
+      const bool told = step > 1 && c == 12 + (step - 1) % 3;  // where it was as the fluid solved
+      EXPECT_EQ(given[c].x() < 0, told) << "cell " << c << ", step " << step;
+    }
+    side->commit();
+  }
+}
+
 TEST(ParticleParticipant, repeats_a_window_with_the_same_bits_after_a_rollback) {
   Bench bench;
   bench.scene.interphase.drag = DragLaw::gidaspow;
@@ -354,40 +303,6 @@ TEST(ParticleParticipant, cuts_the_window_into_the_sub_steps_of_the_scene) {
   side.start({}, out);
   side.advance(bench.window(1), bench.fluid(), out, quiet);
   EXPECT_EQ(engine->sub_steps_seen, 4);  // 1e-3/2.5e-4
-}
-
-TEST(MakeParticleParticipant, refuses_an_engine_that_the_scene_does_not_ask_for) {
-  EXPECT_THROW(make_particle_participant("lammps"), ConfigError);
-  Bench bench;
-  bench.scene.particles.backend = ParticleBackend::kinematic;
-  const auto side = make_particle_participant("native");
-  EXPECT_EQ(side->identity().backend, "native");
-  EXPECT_THROW(side->configure(bench.scene, bench.mesh), ConfigError);
-}
-
-TEST(MakeParticleParticipant, takes_part_with_an_engine_or_with_prescribed_solids) {
-  Bench bench;
-  bench.scene.particles.backend = ParticleBackend::kinematic;
-  bench.scene.particles.materials["glass"].density = 2500;
-  InsertionSettings insertion;
-  insertion.type = InsertionType::packing;
-  insertion.material = "glass";
-  insertion.diameter = 0.02;
-  insertion.count = 25;
-  bench.scene.particles.insertion = {insertion};
-  const auto moving = make_particle_participant("kinematic");
-  moving->configure(bench.scene, bench.mesh);
-  Fields out;
-  moving->start({}, out);
-  EXPECT_EQ(out.number(field::particle_count), 25);
-
-  bench.scene.interphase.voidage = VoidageMap::prescribed;
-  bench.scene.interphase.prescribed = PrescribedSettings{"0.5", 1e-3};
-  const auto solids = make_particle_participant("native");
-  solids->configure(bench.scene, bench.mesh);
-  Fields given;
-  solids->start({}, given);
-  EXPECT_EQ(given.scalars(field::voidage, 27)[13], 0.5);
 }
 
 }  // namespace

@@ -120,6 +120,8 @@ TEST(SceneErrors, keys_without_meaning_for_the_type) {
 TEST(SceneErrors, conditions_of_a_misspelt_type_are_not_reported_on_top) {
   expect_error(with("type: mass_flow", "type: massflow"),
                "s.yaml:24:19: fluid.boundaries.inlet.type: `massflow`", {"nearest: `mass_flow`"});
+  expect_error(with("type: lattice", "type: latice"),
+               "s.yaml:46:14: particles.insertion[1].type: `latice`", {"nearest: `lattice`"});
 }
 
 TEST(SceneErrors, aliases_anchors_and_tags) {
@@ -164,12 +166,14 @@ TEST(SceneErrors, are_all_reported_at_once_in_the_order_of_the_file) {
   text = replaced(text, "drag: wen_yu", "drag: wenyu");
   text = replaced(text, "side: z_max", "sied: z_max");
   text = replaced(text, "law: linear", "law: hertz");
+  text = replaced(text, "material: steel", "material: stel");  // found by a check after reading
   const std::string errors = errors_in(text);
   std::vector<std::string> starts{"s.yaml:5:13: scene.end_time",
                                   "s.yaml:13:12: fluid.density",
                                   "s.yaml:21:7: fluid.mesh.patches.outlet.side: missing",
                                   "s.yaml:21:16: fluid.mesh.patches.outlet.sied: unknown key",
                                   "s.yaml:36:10: particles.contact.law",
+                                  "s.yaml:46:33: particles.insertion[1].material",
                                   "s.yaml:51:9: interphase.drag"};
   std::size_t at = 0;
   for (const std::string& start : starts) {

@@ -4,7 +4,7 @@
 SCENE ?= configs/quickstart.yaml
 OUT   ?=
 
-.PHONY: run test build packages test_packages lint asan clean
+.PHONY: run test build packages test_packages lint tidy asan clean
 
 build: packages
 	@cmake --preset release >/dev/null || cmake --preset release
@@ -26,6 +26,10 @@ asan:
 
 lint: packages
 	./tests/tools/check_format.sh
+
+tidy: test_packages
+	cmake --preset release
+	./tests/tools/check_tidy.sh build/release
 
 packages:
 	@./tests/tools/install_packages.sh build

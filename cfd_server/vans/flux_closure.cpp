@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace fluxpact {
 
@@ -43,8 +44,7 @@ double close_fluxes(ClosureTree& tree, const Stencil& s, std::span<const double>
                     std::span<double> flux) {
   std::ranges::fill(tree.carry, 0.0L);
   double largest = 0;
-  for (auto it = tree.order.rbegin(); it != tree.order.rend(); ++it) {
-    const int cell = *it;
+  for (const int cell : std::views::reverse(tree.order)) {
     const int parent_face = tree.parent_face[cell];
     if (parent_face < 0) continue;
     // The cell's sum is exact to its last digit, and what the rounding of the new flux leaves goes

@@ -78,9 +78,7 @@ int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
                           : s.side_sign[side] > 0 ? c.faces.into_owner[f]
                                                   : c.faces.into_neighbour[f];
   }
-  for (std::size_t i = 0; i < solver.slip.size(); ++i) {
-    solver.slip[i].weight = c.faces.into_owner[solver.slip[i].face];
-  }
+  for (SlipFace& face : solver.slip) face.weight = c.faces.into_owner[face.face];
   const int iterations = solver.solve(scale);
   for (int cell = 0; cell < s.cells; ++cell) velocity[cell] += solver.change[cell];
   return iterations;

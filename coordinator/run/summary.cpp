@@ -38,16 +38,22 @@ void Summary::start(const Mesh& mesh, const Scene& scene, const CommittedState& 
   }
 }
 
-/// Flux-weighted pressure of the cells at the inflow less that at the outflow [Pa].
+/// Mean pressure of the cells at the faces where fluid enters, by area, less that where it leaves
+/// [Pa].
 double Summary::pressure_drop(const CommittedState& state) const {
   const Fields fluid = fields_of(state.fluid);
   const auto flux = fluid.scalars(field::face_flux, mesh_->faces());
   const auto pressure = fluid.scalars(field::pressure, mesh_->cells());
   double in = 0, in_pressure = 0, out = 0, out_pressure = 0;
   for (int face = mesh_->internal_faces(); face < mesh_->faces(); ++face) {
-    const double amount = flux[face];
-    (amount < 0 ? in : out) += std::abs(amount);
-    (amount < 0 ? in_pressure : out_pressure) += std::abs(amount) * pressure[mesh_->owner[face]];
+    const double area = mesh_->face_areas[face].norm();
+    if (flux[face] < 0) {
+      in += area;
+      in_pressure += area * pressure[mesh_->owner[face]];
+    } else if (flux[face] > 0) {
+      out += area;
+      out_pressure += area * pressure[mesh_->owner[face]];
+    }
   }
   return in > 0 && out > 0 ? in_pressure / in - out_pressure / out : 0.0;
 }

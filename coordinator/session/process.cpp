@@ -39,15 +39,15 @@ struct SpawnSettings {
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 };
 
-/// Our environment, and how long the threads of a server spin before they sleep: by default a
-/// millisecond, which on a machine with other work makes a parallel loop ten times slower than one
-/// thread; 10,000 rounds are some 10 microseconds.
+/// Our environment; and unless the user says otherwise the threads of a server sleep while they
+/// wait for each other. The default of g++'s OpenMP is to spin for a millisecond: on a machine with
+/// other work that makes two threads several times slower than one.
 std::vector<std::string> environment_of_servers() {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable)
     variables.emplace_back(*variable);
-  if (std::getenv("GOMP_SPINCOUNT") == nullptr && std::getenv("OMP_WAIT_POLICY") == nullptr)
-    variables.emplace_back("GOMP_SPINCOUNT=10000");
+  if (std::getenv("OMP_WAIT_POLICY") == nullptr && std::getenv("GOMP_SPINCOUNT") == nullptr)
+    variables.emplace_back("OMP_WAIT_POLICY=passive");
   return variables;
 }
 

@@ -65,7 +65,8 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
   for (const Vector3& translation : mesh.translations) {
     int axis = 0;
     translation.cwiseAbs().maxCoeff(&axis);
-    domain.sides[2 * axis] = domain.sides[2 * axis + 1] = SideKind::periodic;
+    const int low = Domain::low_side(axis);
+    domain.sides[low] = domain.sides[low + 1] = SideKind::periodic;
   }
   return domain;
 }

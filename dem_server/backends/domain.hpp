@@ -21,7 +21,8 @@ struct Domain {
   Vector3 upper;                    ///< [m]
   std::array<SideKind, 6> sides{};  ///< in the order of Side: x_min, x_max, y_min, ...
 
-  bool periodic(int axis) const { return sides[2 * axis] == SideKind::periodic; }
+  static int low_side(int axis) { return 2 * axis; }
+  bool periodic(int axis) const { return sides[low_side(axis)] == SideKind::periodic; }
   double length(int axis) const { return upper[axis] - lower[axis]; }
   /// Place of the plane of side 0 ... 5 along its axis [m].
   double plane(int side) const { return side % 2 == 0 ? lower[side / 2] : upper[side / 2]; }

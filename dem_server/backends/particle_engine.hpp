@@ -1,4 +1,5 @@
-// What every particle engine offers to the code between the phases: state by id, and one way forward.
+// What every particle engine offers to the code between the phases: state by id, and one way
+// forward.
 #pragma once
 
 #include <cstdint>
@@ -33,9 +34,10 @@ class ParticleEngine {
   /// False if forces do not move the particles (a frozen bed): they then count as infinitely heavy.
   virtual bool mobile() const = 0;
 
-  /// Advance by `window` [s] in `sub_steps` equal steps under gravity, contact, and a force [N] on each particle
-  /// (row by row of `particles()`) that stays constant over the window.
-  virtual void advance(double window, int sub_steps, std::span<const Vector3> force, const Progress& progress) = 0;
+  /// Advance by `window` [s] in `sub_steps` equal steps under gravity, contact, and a force [N] on
+  /// each particle (row by row of `particles()`) that stays constant over the window.
+  virtual void advance(double window, int sub_steps, std::span<const Vector3> force,
+                       const Progress& progress) = 0;
   virtual void commit() = 0;
   virtual void rollback() = 0;
 };

@@ -41,7 +41,7 @@ void check_row(const ParticleState& particles, int row, int materials) {
 
 }  // namespace
 
-ParticleState checked_rows(const ParticleState& particles, int materials) {
+ParticleState checked_rows(ParticleState particles, int materials) {
   const std::size_t count = particles.id.size();
   if (particles.position.size() != count || particles.velocity.size() != count ||
       particles.spin.size() != count || particles.radius.size() != count ||
@@ -53,16 +53,15 @@ ParticleState checked_rows(const ParticleState& particles, int materials) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return particles.id[a] < particles.id[b]; });
-  ParticleState sorted = particles;
-  reorder(order, sorted.id);
-  reorder(order, sorted.position);
-  reorder(order, sorted.velocity);
-  reorder(order, sorted.spin);
-  reorder(order, sorted.radius);
-  reorder(order, sorted.density);
-  reorder(order, sorted.material);
-  for (int row = 0; row < sorted.size(); ++row) check_row(sorted, row, materials);
-  return sorted;
+  reorder(order, particles.id);
+  reorder(order, particles.position);
+  reorder(order, particles.velocity);
+  reorder(order, particles.spin);
+  reorder(order, particles.radius);
+  reorder(order, particles.density);
+  reorder(order, particles.material);
+  for (int row = 0; row < particles.size(); ++row) check_row(particles, row, materials);
+  return particles;
 }
 
 }  // namespace fluxpact

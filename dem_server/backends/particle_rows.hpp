@@ -8,6 +8,6 @@ namespace fluxpact {
 /// The same particles, ascending by id. Throws ConfigError that names the particle if an id stands
 /// twice, a radius or density is not positive, a material is not among `materials`, or a number is
 /// not finite; and if the arrays differ in length.
-ParticleState checked_rows(const ParticleState& particles, int materials);
+ParticleState checked_rows(ParticleState particles, int materials);
 
 }  // namespace fluxpact

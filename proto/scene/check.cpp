@@ -279,6 +279,12 @@ void check_interphase(const Scene& scene, Findings& findings) {
 
 void check_launch(const Scene& scene, Findings& findings) {
   const LaunchSettings& launch = scene.launch;
+  if (launch.mode == LaunchMode::external && launch.listen.empty() &&
+      is_sound(findings, {"launch.mode"})) {
+    findings.add("launch.listen",
+                 "missing; with `mode: external` participants must know where to connect, "
+                 "e.g. tcp://127.0.0.1:5555");
+  }
   if (launch.listen.empty() || !is_sound(findings, {"launch.listen", "launch.security"})) {
     return;
   }

@@ -27,7 +27,8 @@ class ParticipantChannel {
   /// `patience`.
   void send(Message& message, Milliseconds patience);
 
-  /// Let what was sent last leave when this channel is closed, for at most `patience`. Otherwise it is dropped.
+  /// Let what was sent last leave when this channel is closed, for at most `patience`. Otherwise it
+  /// is dropped.
   void linger(Milliseconds patience);
 
   /// The next message, checked; nothing after `patience`. Throws ProtocolError on a malformed one.

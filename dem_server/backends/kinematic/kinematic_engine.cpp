@@ -9,9 +9,10 @@ namespace {
 
 class KinematicEngine final : public ParticleEngine {
  public:
-  KinematicEngine(const Scene& scene, const Mesh& mesh, const ParticleState& initial)
+  KinematicEngine(const Scene& scene, const Mesh& mesh, ParticleState initial)
       : domain_(particle_domain(scene, mesh)),
-        presented_(checked_rows(initial, static_cast<int>(scene.particles.materials.size()))),
+        presented_(
+            checked_rows(std::move(initial), static_cast<int>(scene.particles.materials.size()))),
         committed_position_(presented_.position) {}
 
   const ParticleState& particles() const override { return presented_; }
@@ -47,7 +48,7 @@ class KinematicEngine final : public ParticleEngine {
 
 std::unique_ptr<ParticleEngine> make_kinematic_engine(const Scene& scene, const Mesh& mesh,
                                                       ParticleState initial) {
-  return std::make_unique<KinematicEngine>(scene, mesh, initial);
+  return std::make_unique<KinematicEngine>(scene, mesh, std::move(initial));
 }
 
 }  // namespace fluxpact

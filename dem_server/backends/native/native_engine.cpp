@@ -27,7 +27,7 @@ struct SavedState {
 
 class NativeEngine final : public ParticleEngine {
  public:
-  NativeEngine(const Scene& scene, const Mesh& mesh, const ParticleState& initial);
+  NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState initial);
 
   const ParticleState& particles() const override { return presented_; }
   bool mobile() const override { return true; }
@@ -82,13 +82,13 @@ class NativeEngine final : public ParticleEngine {
   std::vector<Vector3> sorted_drive_;
 };
 
-NativeEngine::NativeEngine(const Scene& scene, const Mesh& mesh, const ParticleState& initial)
+NativeEngine::NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState initial)
     : domain_(particle_domain(scene, mesh)),
       laws_(scene.particles),
       shifts_(shift_vectors(domain_)),
       gravity_(scene.scene.gravity),
       friction_(laws_.any_friction()),
-      presented_(checked_rows(initial, laws_.walls())) {
+      presented_(checked_rows(std::move(initial), laws_.walls())) {
   const auto is = [this](SideKind kind) {
     return std::find(domain_.sides.begin(), domain_.sides.end(), kind) != domain_.sides.end();
   };
@@ -380,7 +380,7 @@ void NativeEngine::rollback() {
 
 std::unique_ptr<ParticleEngine> make_native_engine(const Scene& scene, const Mesh& mesh,
                                                    ParticleState initial) {
-  return std::make_unique<NativeEngine>(scene, mesh, initial);
+  return std::make_unique<NativeEngine>(scene, mesh, std::move(initial));
 }
 
 }  // namespace fluxpact

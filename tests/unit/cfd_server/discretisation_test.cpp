@@ -56,6 +56,7 @@ TEST(Gradient, is_zero_across_a_single_layer_of_cells) {
   const Stencil stencil = make_stencil(c.mesh);
   const std::vector<std::uint8_t> none(static_cast<std::size_t>(stencil.boundary_faces()), 0);
   std::vector<double> field;
+  field.reserve(c.mesh.cell_centres.size());
   for (const Vector3& x : c.mesh.cell_centres) field.push_back(3 * x.x() - x.z());
   const std::vector<double> jumps(none.size(), 0.0);
   std::vector<Vector3> result(field.size());
@@ -68,6 +69,7 @@ TEST(Reconstruction, is_exact_for_linear_fields_on_an_irregular_mesh) {
   const Stencil stencil = make_stencil(mesh);
   const LinearField field;
   std::vector<double> flux;
+  flux.reserve(mesh.owner.size());
   for (int f = 0; f < mesh.faces(); ++f)
     flux.push_back(field(mesh.face_centres[f]).dot(mesh.face_areas[f]));
   const std::vector<Matrix3> gradients(mesh.cell_volumes.size(), field.slope);
@@ -148,6 +150,7 @@ TEST(Transport, limited_convection_makes_no_new_extremum) {
   std::vector<double> profile{0,   0,   0,   0,    0.2, 0.9, 1, 1, 1, 0.7,
                               0.3, 0.3, 0.3, 0.31, 0.5, 0.4, 0, 0, 0, 0};
   std::vector<Vector3> velocity;
+  velocity.reserve(profile.size());
   for (const double v : profile) velocity.emplace_back(v, -v, 2 * v);
   const std::vector<Vector3> jumps(static_cast<std::size_t>(stencil.boundary_faces()),
                                    Vector3::Zero());

@@ -117,12 +117,14 @@ TEST(MomentumSolver, solves_convection_diffusion_and_free_slip) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<SlipFace> slip;
+  slip.reserve(static_cast<std::size_t>(stencil.boundary_faces()));
   for (int f = stencil.internal_faces; f < stencil.faces; ++f) {
     // Oblique normals: the three components are coupled.
     slip.push_back({f, stencil.owner[f], Vector3(1, 2, -1).normalized(), 5.0});
   }
   MomentumSolver solver(stencil, slip);
   std::vector<Vector3> exact;
+  exact.reserve(c.mesh.cell_volumes.size());
   for (int cell = 0; cell < stencil.cells; ++cell)
     exact.emplace_back(unit(random), unit(random), unit(random));
   for (double& weight : solver.weight) weight = 100 * unit(random);

@@ -26,7 +26,7 @@ inline Mesh without_lattice(Mesh mesh) {
 /// Points moved by a map: sheared, rotated, warped.
 template <class Move>
 Mesh moved(const Mesh& mesh, const Move& move) {
-  MeshTopology topology = mesh;
+  MeshTopology topology = static_cast<const MeshTopology&>(mesh);
   for (Vector3& point : topology.points) point = move(point);
   return without_lattice(with_geometry(std::move(topology)));
 }

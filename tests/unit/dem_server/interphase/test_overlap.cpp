@@ -254,6 +254,7 @@ TEST(Overlap, counts_a_polyhedron_that_is_not_convex) {
   Solid ell;
   const std::vector<Vector3> base{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
   std::vector<Vector3> top;
+  top.reserve(base.size());
   for (const Vector3& p : base) top.push_back(p + Vector3(0, 0, 1));
   ell.loops.push_back(top);
   ell.loops.emplace_back(base.rbegin(), base.rend());

@@ -132,6 +132,37 @@ TEST(Impact, of_two_spheres_slips_at_a_large_angle) {
   EXPECT_NEAR(impact.spin, -2.5 * loss, 2 * tolerance * 2.5 * loss);
 }
 
+TEST(Impact, is_the_same_in_all_directions) {
+  // The same oblique impact with its axes exchanged in turn: x y z -> y z x -> z x y.
+  const auto after = [](int turns) {
+    const auto turned = [turns](const Vector3& v) {
+      return Vector3(v[(3 - turns) % 3], v[(4 - turns) % 3], v[(5 - turns) % 3]);
+    };
+    const Vector3 centre = Vector3::Constant(0.01);
+    ParticleState state;
+    add_sphere(state, centre, turned({speed, 2e-3, 0}), r);
+    add_sphere(state, centre + turned({2 * r + 1e-9, 0, 0}), Vector3::Zero(), r);
+    const auto engine = make_engine(impact_scene(), state);
+    run(*engine, 1e-3, time_step);
+    // Back to the axes of the first.
+    const Vector3& v = engine->particles().velocity[0];
+    const Vector3& w = engine->particles().spin[0];
+    const auto back = [turns](const Vector3& u) {
+      return Vector3(u[turns % 3], u[(turns + 1) % 3], u[(turns + 2) % 3]);
+    };
+    return std::pair(back(v), back(w));
+  };
+  const auto [velocity, spin] = after(0);
+  EXPECT_GT(std::abs(spin.z()), 0.1);
+  for (const int turns : {1, 2}) {
+    const auto [v, w] = after(turns);
+    // Sums of three squares in another order: rounding, over the 200 sub-steps of the contact and
+    // an overlap of 1e-5 of the position.
+    EXPECT_LT((v - velocity).norm(), 1e-9 * velocity.norm());
+    EXPECT_LT((w - spin).norm(), 1e-9 * spin.norm());
+  }
+}
+
 TEST(Impact, spring_of_a_sticking_contact_is_second_order) {
   // Sphere pressed on a wall by gravity, elastic, large friction: v = u0 (5 + 2 cos w t) / 7.
   const auto error = [](double dt) {

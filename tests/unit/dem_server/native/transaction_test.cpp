@@ -22,6 +22,7 @@ void expect_same_bits(const ParticleState& a, const ParticleState& b) {
 
 std::vector<Vector3> some_force(int count, double scale) {
   std::vector<Vector3> force;
+  force.reserve(count);
   for (int i = 0; i < count; ++i) force.emplace_back(scale * (i % 3), scale, -scale * (i % 5));
   return force;
 }

@@ -128,6 +128,14 @@ TEST(SceneChecks, formula_is_parsed) {
                "s.yaml:12:25: interphase.prescribed.voidage: ", {"q"});
 }
 
+TEST(SceneChecks, participants_from_outside_must_know_where_to_connect) {
+  EXPECT_NE(errors_in(prescribed_scene, {"launch.mode=external"}).find("launch.listen: missing"),
+            std::string::npos);
+  EXPECT_EQ(errors_in(prescribed_scene,
+                      {"launch.mode=external", "launch.listen=\"tcp://127.0.0.1:5555\""}),
+            "");
+}
+
 TEST(SceneChecks, nothing_listens_off_loopback_by_accident) {
   const std::string listen = "listen: \"tcp://127.0.0.1:5555\"";
   expect_error(with(listen, "listen: \"tcp://0.0.0.0:5555\""),

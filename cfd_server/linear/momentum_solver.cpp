@@ -74,7 +74,13 @@ int MomentumSolver::solve(double scale_squared) {
     }
     precondition(direction_, hat_);
     multiply(hat_, product_);
-    const double alpha = rho / dot(shadow_, product_);
+    const double projection = dot(shadow_, product_);
+    if (projection == 0) {
+      restart = true;
+      ++iterations;
+      continue;
+    }
+    const double alpha = rho / projection;
     add(alpha, hat_, change);
     add(-alpha, product_, residual);
     precondition(residual, hat_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 namespace fluxpact {
 
@@ -30,8 +29,9 @@ ClosureTree make_closure_tree(const Stencil& s, const BoundaryConditions& condit
   for (const FluidRegion& region : regions.list) {
     if (!region.open) reach(region.first_cell, -1, -1, 0.0);
   }
-  for (std::size_t next = 0; next < tree.order.size(); ++next) {
-    const int cell = tree.order[next];
+  std::size_t next = 0;
+  while (next < tree.order.size()) {  // `order` grows meanwhile
+    const int cell = tree.order[next++];
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
       if (other >= 0) reach(other, s.side_face[side], cell, -s.side_sign[side]);
@@ -44,7 +44,8 @@ double close_fluxes(ClosureTree& tree, const Stencil& s, std::span<const double>
                     std::span<double> flux) {
   std::ranges::fill(tree.carry, 0.0L);
   double largest = 0;
-  for (const int cell : std::views::reverse(tree.order)) {
+  for (std::size_t left = tree.order.size(); left > 0; --left) {
+    const int cell = tree.order[left - 1];
     const int parent_face = tree.parent_face[cell];
     if (parent_face < 0) continue;
     // The cell's sum is exact to its last digit, and what the rounding of the new flux leaves goes

@@ -68,9 +68,12 @@ int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
   for (int cell = 0; cell < s.cells; ++cell) {
     const double diagonal = c.inertia[cell] + c.drag[cell];
     solver.diagonal[cell] = diagonal + c.transport[cell];
-    solver.residual[cell] = c.known[cell] + force[cell] - diagonal * velocity[cell] -
-                            voidage[cell] * s.volume[cell] * pressure_gradient[cell];
-    scale += c.known[cell].squaredNorm() + (solver.diagonal[cell] * velocity[cell]).squaredNorm();
+    const Vector3 pressure_force = voidage[cell] * s.volume[cell] * pressure_gradient[cell];
+    const Vector3 resisted = diagonal * velocity[cell];
+    solver.residual[cell] = c.known[cell] + force[cell] - resisted - pressure_force;
+    // Of all terms: in a fluid that starts from rest most of them vanish.
+    scale += c.known[cell].squaredNorm() + force[cell].squaredNorm() + resisted.squaredNorm() +
+             pressure_force.squaredNorm();
   }
   for (std::size_t side = 0; side < s.side_face.size(); ++side) {
     const int f = s.side_face[side];

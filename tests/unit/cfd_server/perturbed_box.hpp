@@ -14,7 +14,7 @@ namespace fluxpact {
 /// Points inside the box move by up to `share` of the spacing of its cells; those at its ends stay,
 /// so a periodic pair still fits.
 inline Mesh perturbed(const Mesh& box, const Vector3& spacing, double share, unsigned seed) {
-  MeshTopology topology = box;
+  MeshTopology topology = static_cast<const MeshTopology&>(box);
   Vector3 lower = topology.points.front();
   Vector3 upper = lower;
   for (const Vector3& point : topology.points) {

@@ -157,6 +157,25 @@ TEST(Legacy, runs_on_a_rough_bed_and_does_not_balance) {
   for (const Vector3& u : solver.committed().velocity) EXPECT_LT(u.norm(), 50);
 }
 
+TEST(Start, from_rest_a_moving_lid_alone_sets_the_fluid_going) {
+  // Nothing but the lid's drag acts in the first window: no old velocity, no source, no inflow.
+  FluidCase c({6, 1, 6}, {0.1, 0.01, 0.1});
+  c.scene.fluid.viscosity = 1e-3;
+  c.scene.fluid.mesh.periodic = {Axis::y};
+  c.side("lid", Side::z_max, superficial_inlet({1, 0, 0}));
+  c.make_mesh();
+  for (const auto choice :
+       {LinearSolverChoice::automatic, LinearSolverChoice::conjugate_gradient}) {
+    c.scene.fluid.numerics.solver = choice;
+    const Solids solids(c.mesh);
+    VansSolver solver(c.scene, c.mesh);
+    solver.start(solids.voidage);
+    run_window(solver, solids, 1, 0.02);
+    EXPECT_LT(solver.report().predictor_iterations, 30);
+    EXPECT_GT(solver.committed().velocity.back().x(), 0);
+  }
+}
+
 struct Extreme {
   const char* name;
   std::array<int, 3> cells;

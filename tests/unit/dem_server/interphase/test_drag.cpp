@@ -71,7 +71,8 @@ TEST(Drag, is_continuous_and_finite_without_slip) {
 TEST(Drag, grows_with_slip) {
   for (const auto law : {ergun_drag, wen_yu_drag, gidaspow_drag}) {
     double last = 0;
-    for (double slip = 0; slip < 40; slip += 0.1) {  // passes Re = 1000
+    for (int tenths = 0; tenths < 400; ++tenths) {  // passes Re = 1000
+      const double slip = 0.1 * tenths;
       const double now = law({0.85, 1e-3, slip}, air);
       EXPECT_GT(now, last) << slip;
       last = now;

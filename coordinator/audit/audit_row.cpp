@@ -93,7 +93,11 @@ std::string audit_csv_header() {
 }
 
 std::string audit_reference() {
-  std::string table = "| column | unit | meaning |\n| --- | --- | --- |\n";
+  std::string table =
+      "# The audit\n\nColumns of `audit.csv`, one row for each committed window, recomputed by the "
+      "coordinator from what the\n"
+      "participants sent. Made by `coordinator reference audit`.\n\n"
+      "| column | unit | meaning |\n| --- | --- | --- |\n";
   for (const AuditColumn& column : all_columns) {
     table += fmt::format("| `{}` | {} | {} |\n", column.name, column.unit, column.meaning);
   }

@@ -45,7 +45,7 @@ std::span<const AuditColumn> audit_columns();
 /// "step,time,..." and a line end.
 std::string audit_csv_header();
 
-/// The columns as a Markdown table: name, unit, meaning.
+/// docs/audit-reference.md: the columns as a Markdown table of name, unit, meaning.
 std::string audit_reference();
 
 }  // namespace fluxpact

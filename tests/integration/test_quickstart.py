@@ -14,7 +14,7 @@ class Quickstart(ProgramTest):
             stdout, _ = self.run_scene(QUICKSTART, "--set", f"fluid.numerics.pressure_tolerance={tolerance}", timeout=600)
             print(f"pressure tolerance {tolerance}{stdout}")
             rows = self.audit()
-            self.assertEqual(len(rows), 2000)
+            self.assertEqual(len(rows), 1000)
             self.assertLess(max(abs(row["relative_imbalance"]) for row in rows), CONSERVED)
             self.assertLess(max(row["max_cell_residual"] for row in rows), CONSERVED)
             self.assertLess(max(row["voidage_volume_error"] for row in rows), CONSERVED)

@@ -43,6 +43,12 @@ struct ClosureCase {
   LinearSolverChoice solver;
 };
 
+/// The name of the case in the test's name.
+void PrintTo(const ClosureCase& each, std::ostream* out) {
+  *out << each.tolerance << (each.perturbed ? " perturbed" : " box")
+       << (each.solver == LinearSolverChoice::automatic ? "" : " cg");
+}
+
 class Closure : public ::testing::TestWithParam<ClosureCase> {};
 
 TEST_P(Closure, is_exact_at_any_solver_tolerance) {

@@ -185,6 +185,8 @@ struct Extreme {
   double drag;  // x = B Δt/(ρ ε V)
 };
 
+void PrintTo(const Extreme& extreme, std::ostream* out) { *out << extreme.name; }
+
 class Extremes : public ::testing::TestWithParam<Extreme> {};
 
 TEST_P(Extremes, stay_finite_and_balanced) {

@@ -42,6 +42,8 @@ struct Fault {
   std::optional<int> cell;
 };
 
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.quantity; }
+
 class GateRefuses : public testing::TestWithParam<Fault> {};
 
 TEST_P(GateRefuses, one_quantity_over_the_limit_or_without_a_value) {

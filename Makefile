@@ -7,8 +7,8 @@ OUT   ?=
 .PHONY: run test build packages test_packages lint tidy asan clean
 
 build: packages
-	@cmake --preset release >/dev/null || cmake --preset release
-	@cmake --build --preset release
+	@cmake --preset release
+	@cmake --build --preset release --target coordinator cfd_server dem_server
 
 run: build
 	./build/release/bin/coordinator run $(SCENE) $(if $(OUT),--out $(OUT))

@@ -1,0 +1,148 @@
+"""A participant that breaks the protocol ends the run with an error that says how; nothing of its window is recorded."""
+
+import subprocess
+import threading
+import unittest
+
+import numpy
+
+from programs import BIN, EXIT_CONSERVATION, EXIT_NUMERICS, EXIT_PARTICIPANT, ProgramTest
+from python_participant import Participant
+from test_python_participant import free_port, porous_block
+
+FAULT_STEP = 5
+
+
+class Faulty(Participant):
+    """Behaves well until step 5, then applies `fault(header, arrays)` to its message, or raises to fall silent."""
+
+    def __init__(self, endpoint, fault):
+        super().__init__(endpoint, voidage=0.5, drag=1000.0)
+        self.fault = fault
+
+    def say(self, kind, body=None, arrays=None):
+        if self.step == FAULT_STEP and kind == "result":
+            body, arrays = dict(body or {}), dict(arrays or {})
+            kind = self.fault(self, body, arrays) or kind
+        super().say(kind, body, arrays)
+
+
+def not_finite(participant, body, arrays):
+    arrays["drag_source"][7, 1] = numpy.nan
+
+
+def voidage_above_one(participant, body, arrays):
+    arrays["voidage"][3] = 1.5
+
+
+def voidage_wrong(participant, body, arrays):
+    arrays["voidage"][3] -= 1e-3  # a plausible number, but the particles' volume says otherwise
+
+
+def too_short(participant, body, arrays):
+    arrays["voidage"] = arrays["voidage"][:-1]
+
+
+def missing(participant, body, arrays):
+    del arrays["impulse_given"]
+
+
+def number_missing(participant, body, arrays):
+    del body["particle_volume"]
+
+
+def stale_step(participant, body, arrays):
+    participant.step -= 1
+
+
+def lost_message(participant, body, arrays):
+    participant.sequence += 1
+
+
+def foreign_session(participant, body, arrays):
+    participant.session = "0" * 16
+
+
+def says_what_it_may_not(participant, body, arrays):
+    return "commit"
+
+
+def says_what_is_unknown(participant, body, arrays):
+    return "resulte"
+
+
+class Silence(Exception):
+    pass
+
+
+def falls_silent(participant, body, arrays):
+    raise Silence
+
+
+class Misbehaviour(ProgramTest):
+    def provoke(self, fault, expect, *fragments):
+        port = free_port()
+        endpoint = f"tcp://127.0.0.1:{port}"
+        scene = porous_block(port)
+        scene["launch"]["deadline"] = 1.5
+        process = self.start(scene)
+        fluid = subprocess.Popen([BIN / "cfd_server", "--connect", endpoint], stderr=subprocess.DEVNULL)
+        self.addCleanup(self.end, fluid)
+        solids = Faulty(endpoint, fault)
+
+        def serve():
+            try:
+                solids.serve()
+            except (Silence, RuntimeError, TimeoutError):
+                pass  # silent on purpose, or told off by the coordinator
+            finally:
+                solids.socket.close()
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        _, stderr = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, expect, stderr)
+        for fragment in fragments:
+            self.assertIn(fragment, stderr)
+        self.assertEqual(len(self.audit()), FAULT_STEP - 1)
+        self.assertEqual(len(self.results()["audit/step"]), FAULT_STEP - 1)
+
+    def test_a_value_that_is_not_finite(self):
+        self.provoke(not_finite, EXIT_NUMERICS, "dem_server, step 5", "drag_source", "nan", "row 7")
+
+    def test_a_voidage_above_one(self):
+        self.provoke(voidage_above_one, EXIT_NUMERICS, "step 5", "voidage 1.5", "cell 3")
+
+    def test_a_voidage_that_does_not_fit_the_particles(self):
+        self.provoke(voidage_wrong, EXIT_CONSERVATION, "voidage_volume_error", "over the limit")
+
+    def test_an_array_of_another_length(self):
+        self.provoke(too_short, EXIT_PARTICIPANT, "voidage", "39")
+
+    def test_a_missing_field(self):
+        self.provoke(missing, EXIT_PARTICIPANT, "impulse_given", "missing")
+
+    def test_a_missing_number(self):
+        self.provoke(number_missing, EXIT_PARTICIPANT, "particle_volume", "missing")
+
+    def test_an_answer_to_another_step(self):
+        self.provoke(stale_step, EXIT_PARTICIPANT, "dem_server", "step 4", "expected")
+
+    def test_a_gap_in_the_sequence(self):
+        self.provoke(lost_message, EXIT_PARTICIPANT, "dem_server", "sequence")
+
+    def test_another_session(self):
+        self.provoke(foreign_session, EXIT_PARTICIPANT, "dem_server", "session 0000000000000000")
+
+    def test_a_message_that_only_the_coordinator_may_say(self):
+        self.provoke(says_what_it_may_not, EXIT_PARTICIPANT, "dem_server", "may not say 'commit'")
+
+    def test_an_unknown_message(self):
+        self.provoke(says_what_is_unknown, EXIT_PARTICIPANT, "dem_server", "malformed", "resulte")
+
+    def test_silence(self):
+        self.provoke(falls_silent, EXIT_PARTICIPANT, "dem_server", "silent for 1.5 s", "advance")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -6,6 +6,7 @@
 #include "coordinator/audit/audit_row.hpp"
 #include "coordinator/run/run.hpp"
 #include "coordinator/scene/load_scene.hpp"
+#include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
 #include "proto/mesh/box.hpp"
 #include "proto/scene/read_scene.hpp"
@@ -42,6 +43,9 @@ int dispatch(int argc, char** argv) {
   run->add_option("--out", options.directory,
                   "Results directory (default: output.directory of the scene)");
   run->add_option("--until", options.until, "End time in seconds instead of the scene's");
+  run->add_option("--log-level", options.log_level, "Detail of run.log")
+      ->check(CLI::IsMember(log_levels()))
+      ->capture_default_str();
   run->add_flag("--quiet", options.quiet, "No progress, no summary");
   CLI::App* check = app.add_subcommand(
       "check", "Check a scene without running it; shows every error with its place");

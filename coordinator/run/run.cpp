@@ -43,18 +43,22 @@ bool is_due(double every, std::int64_t step, double window) {
   return step % interval == 0;
 }
 
+std::filesystem::path open_log(const std::filesystem::path& path, const std::string& level) {
+  log_to_file("coordinator", level, path);
+  return path;
+}
+
 /// A run that has started: what it needs from the first window to the last.
 class Run {
  public:
-  Run(const Scene& scene, const Mesh& mesh, bool quiet)
+  Run(const Scene& scene, const Mesh& mesh, const RunOptions& options)
       : scene_(scene),
         recorder_(scene.output.directory, mesh,
                   {write_scene(scene), version_line(), scene.coupling.continuity}),
-        log_((log_to_file("coordinator", "info", recorder_.directory() / "run.log"),
-              recorder_.directory() / "run.log")),
-        session_(scene, mesh, log_),
+        log_(open_log(recorder_.directory() / "run.log", options.log_level)),
+        session_(scene, mesh, log_, options.log_level),
         coupling_{scene, mesh, session_},
-        progress_(windows(scene), quiet) {}
+        progress_(windows(scene), options.quiet) {}
 
   ~Run() { session_.close(); }
   Run(const Run&) = delete;
@@ -176,7 +180,7 @@ ExitCode run_scene(const RunOptions& options) {
   const Scene scene = resolve_scene(options);
   const Mesh mesh = make_box(scene.fluid.mesh);
   watch_for_interrupts();
-  Run run(scene, mesh, options.quiet);
+  Run run(scene, mesh, options);
   const ExitCode code = run.run();
   if (!options.quiet) fmt::print("{}", run.summary());
   if (code == ExitCode::interrupted)

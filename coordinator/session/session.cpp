@@ -47,7 +47,8 @@ std::int64_t frame_limit(const Mesh& mesh) {
 
 }  // namespace
 
-Session::Session(const Scene& scene, const Mesh& mesh, const std::filesystem::path& log)
+Session::Session(const Scene& scene, const Mesh& mesh, const std::filesystem::path& log,
+                 const std::string& log_level)
     : scene_(scene),
       id_(make_session_id()),
       run_directory_(scene.launch.listen.empty() ? make_run_directory() : std::filesystem::path()),
@@ -58,7 +59,7 @@ Session::Session(const Scene& scene, const Mesh& mesh, const std::filesystem::pa
   peer(Role::fluid).name = "cfd_server";
   peer(Role::particles).role = Role::particles;
   peer(Role::particles).name = "dem_server";
-  if (scene.launch.mode == LaunchMode::local) launch(log);
+  if (scene.launch.mode == LaunchMode::local) launch(log, log_level);
 }
 
 Session::~Session() {
@@ -67,7 +68,7 @@ Session::~Session() {
   if (!run_directory_.empty()) std::filesystem::remove_all(run_directory_, ignored);
 }
 
-void Session::launch(const std::filesystem::path& log) {
+void Session::launch(const std::filesystem::path& log, const std::string& log_level) {
   const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const std::array<std::string, 2> backends{std::string(name_of(scene_.fluid.backend)),
                                             std::string(name_of(scene_.particles.backend))};
@@ -76,7 +77,8 @@ void Session::launch(const std::filesystem::path& log) {
     each.process = std::make_unique<Process>(
         each.name, here / each.name,
         std::vector<std::string>{"--connect", endpoint(), "--name", each.name, "--backend", backend,
-                                 "--with-parent", std::to_string(getpid())},
+                                 "--with-parent", std::to_string(getpid()), "--log-level",
+                                 log_level},
         log);
     spdlog::info("started {} (process {})", each.name, each.process->pid());
   }

@@ -16,7 +16,8 @@ class Session {
  public:
   /// Open the socket; with launch.mode local also start the two servers that lie beside this
   /// program, their output appended to `log`. Throws SystemError or ConfigError.
-  Session(const Scene& scene, const Mesh& mesh, const std::filesystem::path& log);
+  Session(const Scene& scene, const Mesh& mesh, const std::filesystem::path& log,
+          const std::string& log_level);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -64,7 +65,7 @@ class Session {
   Peer& peer(Role role) { return peers_[static_cast<std::size_t>(role)]; }
   const Peer& peer(Role role) const { return peers_[static_cast<std::size_t>(role)]; }
   Peer* find(const std::string& routing);
-  void launch(const std::filesystem::path& log);
+  void launch(const std::filesystem::path& log, const std::string& log_level);
   void take_message(Milliseconds patience);
   void take_from_stranger(const Arrival& arrival);
   void take_hello(const std::string& routing, const Message& hello);

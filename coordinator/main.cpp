@@ -1,5 +1,6 @@
 // The coordinator: command line only.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 
@@ -73,13 +74,14 @@ int dispatch(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fluxpact::log_to_console("coordinator");
   try {
     return dispatch(argc, argv);
   } catch (const fluxpact::Error& error) {
-    fmt::print(stderr, "coordinator: {}\n", error.what());
+    spdlog::error("{}", error.what());
     return static_cast<int>(error.exit_code());
   } catch (const std::exception& error) {
-    fmt::print(stderr, "coordinator: unexpected: {}\n", error.what());
+    spdlog::error("unexpected: {}", error.what());
     return static_cast<int>(fluxpact::ExitCode::participant);
   }
 }

@@ -138,6 +138,8 @@ class Session {
   void take_mesh(const Message& message) {
     mesh_ = mesh_of(message);
     participant_.configure(scene_, mesh_);
+    spdlog::info("ready for session {}: '{}', {} cells", session_, scene_.scene.name,
+                 mesh_.cells());
     Message result;
     result.header.type = MessageType::result;
     result.header.body["fingerprint"] = fingerprint_text(mesh_);

@@ -28,6 +28,17 @@ class NormalRun(ProgramTest):
         for words in ("gas in / out", "largest imbalance", "pressure drop", "particles (DEM)", "exchange + audit", str(self.out)):
             self.assertIn(words, stdout)
 
+    def test_starts_a_new_log_in_which_every_process_speaks(self):
+        for _ in range(2):
+            self.run_scene(small_bed())
+            self.assertEqual(self.log().count("started dem_server"), 1)
+            for name in ("[coordinator]", "[dem_server]", "[cfd_server]"):
+                self.assertIn(name, self.log())
+
+    def test_is_as_quiet_as_asked(self):
+        self.run_scene(small_bed(), "--log-level", "error")
+        self.assertEqual(self.log(), "")
+
     def test_conserves_mass_and_momentum_in_every_window(self):
         self.run_scene(small_bed())
         for row in self.audit():

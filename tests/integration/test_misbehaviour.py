@@ -106,6 +106,8 @@ class Misbehaviour(ProgramTest):
             self.assertIn(fragment, stderr)
         self.assertEqual(len(self.audit()), FAULT_STEP - 1)
         self.assertEqual(len(self.results()["audit/step"]), FAULT_STEP - 1)
+        thread.join(timeout=10)
+        return solids.log
 
     def test_a_value_that_is_not_finite(self):
         self.provoke(not_finite, EXIT_NUMERICS, "dem_server, step 5", "drag_source", "nan", "row 7")
@@ -114,7 +116,9 @@ class Misbehaviour(ProgramTest):
         self.provoke(voidage_above_one, EXIT_NUMERICS, "step 5", "voidage 1.5", "cell 3")
 
     def test_a_voidage_that_does_not_fit_the_particles(self):
-        self.provoke(voidage_wrong, EXIT_CONSERVATION, "voidage_volume_error", "over the limit")
+        heard = self.provoke(voidage_wrong, EXIT_CONSERVATION, "voidage_volume_error", "over the limit")
+        self.assertEqual(heard[-3:], ["advance", "rollback", "bye"])
+        self.assertEqual(heard.count("commit"), FAULT_STEP - 1)
 
     def test_an_array_of_another_length(self):
         self.provoke(too_short, EXIT_PARTICIPANT, "voidage", "39")

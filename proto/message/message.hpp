@@ -86,7 +86,8 @@ void check_frames(const Message& message);
 // ---- building
 // -----------------------------------------------------------------------------------------
 
-/// Append an array without copying: its memory must stay as it is until the peer has answered.
+/// Append an array without copying: its memory must stay as it is until the peer has answered, and
+/// must not be freed before the channel that sends it is closed, if no answer comes.
 void add_array(Message& message, const FieldView& view);
 void add_ints(Message& message, std::string name, std::span<const int> values);
 

@@ -26,15 +26,18 @@ Message message_of_sizes(const std::vector<std::vector<double>>& arrays) {
   return message;
 }
 
+// Borrowed memory must outlive the channel that sends it: so the arrays stand before the channels
+// in these tests.
+
 TEST(Channel, brings_arrays_of_any_size_aligned_and_unchanged) {
+  std::vector<std::vector<double>> arrays;
+  for (const std::size_t size : {0u, 1u, 3u, 4u, 5u, 100u, 1023u, 1024u, 5000u, 100000u}) {
+    arrays.emplace_back(size);
+    std::iota(arrays.back().begin(), arrays.back().end(), 0.5);
+  }
   for (const std::string& endpoint : {socket_path(), std::string("tcp://127.0.0.1:*")}) {
     CoordinatorChannel coordinator(endpoint, 1 << 26);
     ParticipantChannel participant(coordinator.endpoint());
-    std::vector<std::vector<double>> arrays;
-    for (const std::size_t size : {0u, 1u, 3u, 4u, 5u, 100u, 1023u, 1024u, 5000u, 100000u}) {
-      arrays.emplace_back(size);
-      std::iota(arrays.back().begin(), arrays.back().end(), 0.5);
-    }
     Message sent = message_of_sizes(arrays);
     participant.send(sent, patience);
     const auto arrival = coordinator.wait({}, patience).arrival;
@@ -93,9 +96,9 @@ TEST(Channel, reports_foreign_bytes_as_a_defect_and_goes_on) {
 }
 
 TEST(Channel, drops_a_frame_over_the_limit_without_taking_it_in) {
+  const std::vector<std::vector<double>> large{std::vector<double>(100000)};
   CoordinatorChannel coordinator(socket_path(), 4096);
   ParticipantChannel participant(coordinator.endpoint());
-  const std::vector<std::vector<double>> large{std::vector<double>(100000)};
   Message message = message_of_sizes(large);
   participant.send(message, patience);
   EXPECT_FALSE(coordinator.wait({}, Milliseconds(300)).arrival.has_value());

@@ -40,10 +40,9 @@ struct SpawnSettings {
 };
 
 /// Our environment; and unless the user says otherwise the threads of a server soon sleep while
-/// they wait for each other. By default g++'s OpenMP spins for a millisecond, which on a machine
-/// with other work makes two threads ten times slower than one. 10,000 rounds are some 10
-/// microseconds: as fast on an idle machine (14 against 13.5 ms a window of the quickstart scene,
-/// 17 with none).
+/// they wait for each other. By default g++'s OpenMP spins for about a millisecond, which on a
+/// machine with other work makes two threads several times slower than one; 10,000 rounds are some
+/// 10 microseconds.
 std::vector<std::string> environment_of_servers() {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable)

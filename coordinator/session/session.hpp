@@ -43,8 +43,6 @@ class Session {
   /// Say bye and wait for the processes that we started. Never throws.
   void close() noexcept;
 
-  const std::string& backend(Role role) const { return peer(role).backend; }
-
  private:
   struct Peer {
     Role role = Role::fluid;
@@ -63,7 +61,6 @@ class Session {
   };
 
   Peer& peer(Role role) { return peers_[static_cast<std::size_t>(role)]; }
-  const Peer& peer(Role role) const { return peers_[static_cast<std::size_t>(role)]; }
   Peer* find(const std::string& routing);
   void launch(const std::filesystem::path& log, const std::string& log_level);
   void take_message(Milliseconds patience);

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from programs import (COORDINATOR, EXIT_DONE, EXIT_INTERRUPTED, EXIT_NUMERICS, EXIT_PARTICIPANT, EXIT_USAGE, ProgramTest, children, is_alive,
+from programs import (COORDINATOR, EXIT_DONE, EXIT_INTERRUPTED, EXIT_PARTICIPANT, EXIT_USAGE, ProgramTest, children, is_alive,
                       kill, small_bed)
 
 

@@ -7,7 +7,7 @@ import h5py
 import numpy
 import yaml
 
-from programs import EXIT_CONSERVATION, EXIT_DONE, ProgramTest, legacy, small_bed
+from programs import EXIT_CONSERVATION, ProgramTest, legacy, small_bed
 
 # Round-off of sums over a few hundred faces and cells of quantities that cancel: some 1e-15; 1e-12 is the promise.
 CONSERVED = 1e-12

@@ -1,5 +1,7 @@
 #include "cfd_server/discretisation/stencil.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -89,6 +91,12 @@ Stencil make_stencil(const Mesh& mesh) {
   s.centred = mesh.lattice.has_value();
   s.uniform = mesh.lattice && has_equal_cells(*mesh.lattice);
   return s;
+}
+
+int threads_for(int wanted, int cells) {
+  constexpr int fewest_cells = 10000;
+  const int most = wanted > 0 ? wanted : omp_get_max_threads();
+  return std::clamp(cells / fewest_cells, 1, most);
 }
 
 }  // namespace fluxpact

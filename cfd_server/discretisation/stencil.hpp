@@ -39,6 +39,8 @@ struct Stencil {
   std::vector<int> side_other;    ///< the cell across, −1 at the boundary
   std::vector<double> side_sign;  ///< +1 where the cell owns the face, −1 where it is the neighbour
 
+  int threads = 1;  ///< that share each loop over cells or faces
+
   bool orthogonal = false;  ///< every k vanishes
   bool centred =
       false;  ///< opposite faces lie at equal distances from the cell's centre (lattices)
@@ -49,5 +51,9 @@ struct Stencil {
 
 /// Throws ConfigError naming the face if d·A is not positive: such a mesh has no two-point flux.
 Stencil make_stencil(const Mesh& mesh);
+
+/// Threads that pay on a mesh of this size: those wanted (0: all cores), but not less than some
+/// thousands of cells each.
+int threads_for(int wanted, int cells);
 
 }  // namespace fluxpact

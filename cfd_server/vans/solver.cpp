@@ -124,6 +124,7 @@ void VansSolver::start(std::span<const double> voidage) {
     state.pressure_gradient[cell] = Vector3::Zero();
   }
   self.has_candidate = false;
+  self.fields.pressure_solver->forget();
 }
 
 void VansSolver::advance(const Window& window, const SolidsInput& solids,
@@ -134,7 +135,8 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   self.has_candidate = false;
   check_window(problem.stencil, window, solids);
   self.report = {};
-  open_window(problem, self.committed, window, solids, fields);
+  fields.pressure_solver->begin_window();
+  open_window(problem, self.committed, window, solids, fields, self.report);
   pre_correct(problem, self.committed, window, solids.voidage, fields, self.report);
   if (progress) progress();
   predict(problem, solids.voidage, fields, self.report);
@@ -160,10 +162,12 @@ void VansSolver::commit() {
   if (!impl_->has_candidate)
     throw NumericsError("fluid: there is no candidate to commit; advance must come first");
   std::swap(impl_->committed, impl_->candidate);
+  impl_->fields.pressure_solver->commit();
   impl_->has_candidate = false;
 }
 
 void VansSolver::rollback() { impl_->has_candidate = false; }
+void VansSolver::forget_setup() { impl_->fields.pressure_solver->forget(); }
 
 const FluidState& VansSolver::committed() const { return impl_->committed; }
 const FluidState& VansSolver::candidate() const { return impl_->candidate; }

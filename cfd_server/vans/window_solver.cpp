@@ -48,12 +48,16 @@ void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage
 /// Pressure for the source in hand, and the flux that it drives.
 void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
+  LapClock clock;
   assemble_pressure_rhs(s, problem.conditions, w.faces, w.face_scale, w.source, w.explicit_part,
                         w.rhs);
+  report.seconds.assembly += clock.lap();
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
+  report.seconds.pressure += clock.lap();
   std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, problem.conditions, w.faces, w.pressure, w.flux);
+  report.seconds.assembly += clock.lap();
 }
 
 double largest(std::span<const double> values) {
@@ -105,6 +109,7 @@ void close(const FluidProblem& problem, const Window& window, WindowFields& w,
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
   problem.stencil = make_stencil(mesh);
+  problem.stencil.threads = threads_for(scene.fluid.numerics.threads, mesh.cells());
   problem.conditions = read_boundaries(scene, mesh);
   problem.regions = find_regions(problem.stencil, problem.conditions);
   problem.fluid = {scene.fluid.density, scene.fluid.viscosity, scene.fluid.numerics.convection};
@@ -160,8 +165,9 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
 }
 
 void open_window(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                 const SolidsInput& solids, WindowFields& w) {
+                 const SolidsInput& solids, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
+  LapClock clock;
   const double density = problem.fluid.density;
   update_boundary_values(s, problem.conditions, solids.voidage, w.boundary);
   for (int cell = 0; cell < s.cells; ++cell) {
@@ -185,27 +191,33 @@ void open_window(const FluidProblem& problem, const FluidState& old_state, const
   assemble_faces(s, problem.conditions, w.momentum, solids.voidage, w.old_flux, density,
                  window.length, w.faces);
   assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
+  report.seconds.assembly += clock.lap();
   w.pressure_solver->setup(w.matrix);
+  report.seconds.setup += clock.lap();
 }
 
 void correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
              std::span<const double> voidage, bool last, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
+  LapClock clock;
   evaluate_cells(problem, voidage, w);
   explicit_flux(s, problem.conditions, w.boundary, w.faces,
                 {w.specific_force, w.superficial, w.superficial_gradient, w.flux, w.pressure_slope},
                 w.explicit_part);
+  report.seconds.assembly += clock.lap();
   if (problem.continuity == Continuity::conservative) {
     solve_continuity(problem, w, report);
   } else {
     solve_legacy_continuity(problem, old_state, window, voidage, w, report);
   }
+  clock.lap();  // accounted for by the solve itself
   if (last) close(problem, window, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= voidage[cell];
   close_momentum(s, w.momentum, voidage, w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
+  report.seconds.closure += clock.lap();
 }
 
 void pre_correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
@@ -220,11 +232,13 @@ void pre_correct(const FluidProblem& problem, const FluidState& old_state, const
 void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& w,
              FluidReport& report) {
   const Stencil& s = problem.stencil;
+  LapClock clock;
   // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred
   // parts included.
   std::swap(w.velocity, w.velocity_before);
   report.predictor_iterations += predict_velocity(s, w.momentum, voidage, w.force,
                                                   w.closing_gradient, w.predictor, w.velocity);
+  report.seconds.predictor += clock.lap();
   if (rebuilt_share(s) == 1) return;
   for (int cell = 0; cell < s.cells; ++cell) w.superficial[cell] = voidage[cell] * w.velocity[cell];
   predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);

@@ -74,7 +74,7 @@ struct WindowFields {
 
 /// Everything that stays the same in all correctors of a window.
 void open_window(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                 const SolidsInput& solids, WindowFields& fields);
+                 const SolidsInput& solids, WindowFields& fields, FluidReport& report);
 
 /// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With
 /// `last` the fluxes are closed before the velocity is rebuilt from them.

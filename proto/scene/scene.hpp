@@ -121,6 +121,7 @@ struct FluidNumerics {
   int correctors = 2;
   double pressure_tolerance = 1e-6;  ///< relative residual of the pressure equation [-]
   LinearSolverChoice solver = LinearSolverChoice::automatic;
+  int threads = 0;  ///< 0: all cores of the machine
   LegacySettings legacy;
 };
 

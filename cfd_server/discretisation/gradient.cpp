@@ -51,6 +51,7 @@ std::vector<Vector3> gradient_coefficients(const Stencil& s,
 void gradient(const Stencil& s, std::span<const Vector3> coefficients,
               std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
               std::span<Matrix3> out) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     Matrix3 sum = Matrix3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
@@ -66,6 +67,7 @@ void gradient(const Stencil& s, std::span<const Vector3> coefficients,
 void gradient(const Stencil& s, std::span<const Vector3> coefficients,
               std::span<const double> field, std::span<const double> boundary_jump,
               std::span<Vector3> out) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 sum = Vector3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {

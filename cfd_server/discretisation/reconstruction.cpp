@@ -25,6 +25,7 @@ void reconstruct(const Stencil& s, std::span<const Vector3> coefficients,
                  std::span<const double> flux, std::span<const Matrix3> gradient,
                  std::span<Vector3> out) {
   // A and φ change sign together when seen from the neighbour, so the sign of a side drops out.
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 sum = Vector3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {

@@ -38,6 +38,7 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   }
   transport_force(s, w.momentum.faces, problem.numerics.convection, w.velocity, w.jump,
                   w.velocity_gradient, w.force);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     w.superficial[cell] = voidage[cell] * w.velocity[cell];
     w.specific_force[cell] =
@@ -68,9 +69,11 @@ void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport&
   report.seconds.assembly += clock.lap();
 }
 
-double largest(std::span<const double> values) {
+double largest(const Stencil& s, std::span<const double> values) {
+  const int count = static_cast<int>(values.size());
   double result = 0;
-  for (const double value : values) result = std::max(result, std::abs(value));
+#pragma omp parallel for schedule(static) num_threads(s.threads) reduction(max : result)
+  for (int i = 0; i < count; ++i) result = std::max(result, std::abs(values[i]));
   return result;
 }
 
@@ -80,6 +83,7 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
   const Stencil& s = problem.stencil;
   double change = 0;
   for (int pass = 0; pass < problem.numerics.legacy.iterations; ++pass) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int f = 0; f < s.faces; ++f) w.interstitial_flux[f] = w.flux[f] * w.face_scale[f];
     reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient,
                 w.interstitial);
@@ -91,24 +95,26 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
     change = 0;
     for (int f = 0; f < s.faces; ++f)
       change = std::max(change, std::abs(w.flux[f] - w.flux_before[f]));
-    if (change <= problem.numerics.legacy.tolerance * largest(w.flux)) return;
+    if (change <= problem.numerics.legacy.tolerance * largest(problem.stencil, w.flux)) return;
   }
-  report.legacy_change = std::max(report.legacy_change, change / largest(w.flux));
+  report.legacy_change = std::max(report.legacy_change, change / largest(problem.stencil, w.flux));
 }
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
 void close(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
-  for (std::size_t f = 0; f < w.flux.size(); ++f)
-    w.mass_flux[f] = problem.fluid.density * w.flux[f];
+  const Stencil& s = problem.stencil;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.mass_flux[f] = problem.fluid.density * w.flux[f];
   if (problem.continuity == Continuity::legacy) return;
   const double correction = close_fluxes(w.tree, problem.stencil, w.storage, w.mass_flux);
   // In a fluid at rest all fluxes are rounding, and so is their correction: no error of the solver.
-  const double rounding =
-      1e-13 * problem.fluid.density * largest(problem.stencil.volume) / step.window.length;
-  report.closure_correction = correction > rounding ? correction / largest(w.mass_flux) : 0.0;
-  for (std::size_t f = 0; f < w.flux.size(); ++f)
-    w.flux[f] = w.mass_flux[f] / problem.fluid.density;
+  const double rounding = 1e-13 * problem.fluid.density *
+                          largest(problem.stencil, problem.stencil.volume) / step.window.length;
+  report.closure_correction =
+      correction > rounding ? correction / largest(problem.stencil, w.mass_flux) : 0.0;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.flux[f] = w.mass_flux[f] / problem.fluid.density;
 }
 
 }  // namespace
@@ -156,14 +162,17 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   matrix.diagonal.assign(cell_count, 0.0);
   matrix.coupling.assign(static_cast<std::size_t>(s.internal_faces), 0.0);
   for (auto* values : {&storage, &source, &pressure, &rhs}) values->assign(cell_count, 0.0);
-  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux, &face_voidage,
-                       &interstitial_flux, &flux_before}) {
+  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux})
     values->assign(face_count, 0.0);
-  }
-  face_scale.assign(face_count, 1.0);
   for (auto* values : {&old_superficial, &superficial, &velocity, &velocity_before, &force,
-                       &specific_force, &closing_gradient, &voidage_gradient, &interstitial}) {
+                       &specific_force, &closing_gradient}) {
     values->assign(cell_count, Vector3::Zero());
+  }
+  if (problem.continuity == Continuity::legacy) {
+    for (auto* values : {&face_scale, &face_voidage, &interstitial_flux, &flux_before})
+      values->assign(face_count, 1.0);
+    for (auto* values : {&voidage_gradient, &interstitial})
+      values->assign(cell_count, Vector3::Zero());
   }
   if (problem.numerics.time == TimeScheme::bdf2) convecting.assign(face_count, 0.0);
   if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
@@ -184,6 +193,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
   const double density = problem.fluid.density;
   w.time = time;
   update_boundary_values(s, problem.conditions, voidage, step.window.end(), w.boundary);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     double change = time.now * (voidage[cell] - old_state.voidage[cell]);
     if (time.two_steps())
@@ -192,18 +202,22 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
     w.old_superficial[cell] = old_state.voidage[cell] * old_state.velocity[cell];
     w.pressure[cell] = old_state.pressure[cell] - problem.conditions.level;
   }
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) w.old_flux[f] = old_state.face_flux[f] / density;
   if (problem.continuity == Continuity::conservative) {
     settle_closed_regions(s, problem.regions, w.boundary.flux, density, step.window.length,
                           step.window.step, w.storage);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int cell = 0; cell < s.cells; ++cell) w.source[cell] = -w.storage[cell] / density;
   } else {
     legacy_face_voidage(s, voidage, w.face_voidage);
     legacy_voidage_gradient(s, w.face_voidage, w.voidage_gradient);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int f = 0; f < s.faces; ++f) w.face_scale[f] = 1 / w.face_voidage[f];
   }
   std::span<const double> convecting = old_state.face_flux;
   if (time.two_steps()) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int f = 0; f < s.faces; ++f) {
       w.convecting[f] = extrapolated(time, old_state.face_flux[f], old_state.before.face_flux[f]);
     }
@@ -237,6 +251,7 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   if (last) close(step, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
@@ -245,7 +260,9 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
 
 void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
   const LevelBefore& before = step.old_state.before;
-  for (int cell = 0; cell < step.problem.stencil.cells; ++cell) {
+  const Stencil& s = step.problem.stencil;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 start = w.old_superficial[cell];
     if (w.time.two_steps()) {
       start = extrapolated(w.time, start, Vector3(before.voidage[cell] * before.velocity[cell]));
@@ -266,6 +283,7 @@ void predict(const Step& step, WindowFields& w, FluidReport& report) {
                                                   w.closing_gradient, w.predictor, w.velocity);
   report.seconds.predictor += clock.lap();
   if (rebuilt_share(s) == 1) return;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell)
     w.superficial[cell] = step.solids.voidage[cell] * w.velocity[cell];
   predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);

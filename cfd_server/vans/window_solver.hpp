@@ -68,8 +68,8 @@ struct WindowFields {
   std::vector<Vector3> jump;          ///< one a boundary face
   std::vector<double> pressure_jump;  ///< one a boundary face
 
-  // continuity: legacy
-  std::vector<double> face_scale;         ///< one a face: 1, or 1/ε_f
+  // continuity: legacy; empty else
+  std::vector<double> face_scale;         ///< one a face: 1/ε_f
   std::vector<double> face_voidage;       ///< one a face
   std::vector<double> interstitial_flux;  ///< Λ/ρ [m³/s], one a face
   std::vector<double> flux_before;        ///< one a face

@@ -129,9 +129,10 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   problem.numerics = scene.fluid.numerics;
   problem.continuity = scene.coupling.continuity;
   problem.model = scene.interphase.model;
-  problem.gradient =
-      gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false));
-  problem.reconstruction = reconstruction_coefficients(problem.stencil);
+  const bool lattice = mesh.lattice.has_value();
+  problem.gradient = AxisVectors(
+      gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false)), lattice);
+  problem.reconstruction = AxisVectors(reconstruction_coefficients(problem.stencil), lattice);
   if (!problem.stencil.orthogonal) {
     problem.pressure_gradient =
         gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, true));

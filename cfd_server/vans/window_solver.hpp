@@ -25,9 +25,9 @@ struct FluidProblem {
   FluidNumerics numerics;
   Continuity continuity = Continuity::conservative;
   PressureModel model = PressureModel::a;
-  std::vector<Vector3> gradient;           ///< least-squares coefficients of velocities, one a side
+  AxisVectors gradient;                    ///< least-squares coefficients of velocities, one a side
   std::vector<Vector3> pressure_gradient;  ///< of the pressure; empty on orthogonal meshes
-  std::vector<Vector3> reconstruction;     ///< one a side
+  AxisVectors reconstruction;              ///< one a side
 };
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh);

@@ -1,24 +1,10 @@
 #include "cfd_server/discretisation/gradient.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 namespace fluxpact {
 namespace {
-
-/// Inverse of a symmetric, positive semidefinite matrix on its range. With weights 1/|d|² its
-/// entries are of order one for any size and aspect ratio of the cell, so a fixed threshold tells
-/// zero from small.
-Matrix3 inverse_on_range(const Matrix3& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(matrix);
-  const Vector3& values = solver.eigenvalues();
-  Matrix3 inverse = Matrix3::Zero();
-  for (int i = 0; i < 3; ++i) {
-    if (values[i] < 1e-8) continue;
-    const Vector3 axis = solver.eigenvectors().col(i);
-    inverse += axis * axis.transpose() / values[i];
-  }
-  return inverse;
-}
 
 /// From the cell's centre to where the other value stands.
 Vector3 reach(const Stencil& s, int side) {
@@ -60,6 +46,20 @@ void scalar_gradient(const Stencil& s, const Coefficients& coefficients,
 }
 
 }  // namespace
+
+Matrix3 inverse_on_range(const Matrix3& matrix) {
+  const double mean = matrix.trace() / 3;
+  if (matrix.determinant() > 1e-4 * mean * mean * mean) return matrix.inverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(matrix);
+  const Vector3& values = solver.eigenvalues();
+  Matrix3 inverse = Matrix3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (values[i] < 1e-8) continue;
+    const Vector3 axis = solver.eigenvectors().col(i);
+    inverse += axis * axis.transpose() / values[i];
+  }
+  return inverse;
+}
 
 std::vector<Vector3> gradient_coefficients(const Stencil& s,
                                            std::span<const std::uint8_t> gives_value) {

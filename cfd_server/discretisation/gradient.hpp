@@ -12,6 +12,11 @@
 
 namespace fluxpact {
 
+/// Inverse of a symmetric, positive semidefinite matrix on its range. With weights 1/|d|² the
+/// entries of a least-squares matrix are of order one for any size and aspect ratio of the cell, so
+/// a fixed threshold tells zero from small.
+Matrix3 inverse_on_range(const Matrix3& matrix);
+
 /// One vector a side of each cell [1/m]: grad φ = Σ_sides c (φ_other − φ_P). Weights 1/|d|².
 /// `gives_value`: one a boundary face, whether it enters with a value of its own. Directions in
 /// which a cell sees no second value (one layer of cells between free walls) get a zero gradient.

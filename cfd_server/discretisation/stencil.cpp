@@ -22,19 +22,22 @@ void add_faces(const Mesh& mesh, Stencil& s) {
     const Vector3& area = mesh.face_areas[f];
     const Vector3 from_owner = mesh.face_centres[f] - mesh.cell_centres[mesh.owner[f]];
     const Vector3 delta = internal ? mesh.delta[f] : from_owner;
-    const double projected = delta.dot(area);
-    if (!(projected > 0) || !(from_owner.dot(area) > 0) || from_owner.dot(area) > projected) {
+    if (internal && !(delta.dot(area) > 0)) {
       throw ConfigError(
-          "mesh: face {} at ({}, {}, {}) does not lie between the centres of its cells (cell {}); "
-          "the mesh is too "
-          "skewed for a two-point flux: move its points or make the cells convex",
+          "mesh: face {} at ({}, {}, {}) has the centres of its two cells on one side (cell {} is "
+          "its owner): the cells overlap or are turned inside out; move the points of the mesh",
           f, mesh.face_centres[f].x(), mesh.face_centres[f].y(), mesh.face_centres[f].z(),
           mesh.owner[f]);
     }
+    // The bound holds the two-point part where a concave cell sees a face nearly from its edge;
+    // what it leaves out is in `cross`.
+    const double projected = std::max(delta.dot(area), 0.05 * delta.norm() * area.norm());
     const double conductance = area.squaredNorm() / projected;
     areas.push_back(area);
     s.area_size.push_back(area.norm());
-    s.weight.push_back(internal ? from_owner.dot(area) / projected : 1.0);
+    const double within_owner = std::abs(from_owner.dot(area));
+    const double within_neighbour = std::abs((from_owner - delta).dot(area));
+    s.weight.push_back(internal ? within_owner / (within_owner + within_neighbour) : 1.0);
     s.conductance.push_back(conductance);
     s.cross.emplace_back(area - conductance * delta);
     deltas.push_back(delta);

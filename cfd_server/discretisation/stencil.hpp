@@ -27,7 +27,7 @@ struct Stencil {
   std::vector<double> area_size;  ///< [m²] |A|
   std::vector<double>
       weight;  ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
-  std::vector<double> conductance;  ///< g = |A|²/(A·d) [m]
+  std::vector<double> conductance;  ///< g = |A|²/max(A·d, |A||d|/20) [m]
   std::vector<Vector3>
       cross;          ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
   AxisVectors delta;  ///< d [m]
@@ -56,7 +56,7 @@ struct Stencil {
   int boundary_faces() const { return faces - internal_faces; }
 };
 
-/// Throws ConfigError naming the face if d·A is not positive: such a mesh has no two-point flux.
+/// Throws ConfigError naming the face if d·A is not positive inside the mesh.
 Stencil make_stencil(const Mesh& mesh);
 
 /// Threads that pay on a mesh of this size: those wanted (0: all cores), but not less than some

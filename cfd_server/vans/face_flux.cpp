@@ -10,6 +10,12 @@ double rebuilt_share(const Stencil& s, int face) {
   return few ? 0.05 : 0.2;
 }
 
+double carried_flux(const FluidState& old_state, const TimeCoefficients& time, int face) {
+  double carried = time.last * old_state.face_flux[face];
+  if (time.two_steps()) carried -= time.before * old_state.before.face_flux[face];
+  return carried / time.step;
+}
+
 void resize(FaceCoefficients& c, const Stencil& s) {
   for (auto* values : {&c.mobility, &c.transport_resistance, &c.memory}) {
     values->assign(static_cast<std::size_t>(s.faces), 0.0);
@@ -39,9 +45,7 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
     }
     c.transport_resistance[f] = transport;
     c.mobility[f] = 1 / (transport + rest);
-    double carried = time.last * old_state.face_flux[f];
-    if (time.two_steps()) carried -= time.before * old_state.before.face_flux[f];
-    c.memory[f] = carried / time.step * inverse_share;
+    c.memory[f] = carried_flux(old_state, time, f) * inverse_share;
   }
 }
 

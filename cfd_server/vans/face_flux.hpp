@@ -33,6 +33,9 @@ struct FaceCoefficients {
 /// sees would never decay).
 double rebuilt_share(const Stencil& stencil, int face);
 
+/// What the levels before leave on a face: ρ (last φ^n − before φ^{n−1})/step [kg/s²].
+double carried_flux(const FluidState& old_state, const TimeCoefficients& time, int face);
+
 void resize(FaceCoefficients& coefficients, const Stencil& stencil);
 
 /// pressure_share: χ, one a cell. The old state gives the fluxes that the faces remember.
@@ -48,7 +51,7 @@ struct FaceFluxInput {
   std::span<const Matrix3> superficial_gradient;  ///< ∇q [1/s], one a cell
   std::span<const double> last_flux;  ///< φ of the corrector before [m³/s], one a face
   std::span<const Vector3>
-      pressure_gradient;  ///< least-squares ∇p [Pa/m], one a cell; empty on orthogonal meshes
+      pressure_gradient;  ///< kinked ∇p [Pa/m], one a cell; empty on orthogonal meshes
 };
 
 /// K {H − k·∇p} [m³/s]: the flux but for the pressure difference; where the flux is given, that.

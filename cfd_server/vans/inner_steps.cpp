@@ -56,6 +56,23 @@ double courant_number(const FluidProblem& problem, const FluidState& state,
   return largest * window;
 }
 
+double stiffness_number(const FluidProblem& problem, const SolidsInput& solids, double window) {
+  const Stencil& s = problem.stencil;
+  if (s.few_faces.empty()) return 0;
+  double largest = 0;
+#pragma omp parallel for schedule(static) num_threads(s.threads) reduction(max : largest)
+  for (int cell = 0; cell < s.cells; ++cell) {
+    if (s.few_faces[cell] == 0) continue;
+    double viscous = 0;
+    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side)
+      viscous += problem.fluid.viscosity * s.conductance[s.side_face[side]];
+    const double held = problem.fluid.density * s.volume[cell];
+    largest =
+        std::max(largest, (solids.drag_coefficient[cell] / solids.voidage[cell] + viscous) / held);
+  }
+  return largest * window;
+}
+
 int count_inner_steps(double courant, double limit, const Window& window) {
   const double count = std::ceil(courant / limit);
   if (count > most_inner_steps || !std::isfinite(count)) {

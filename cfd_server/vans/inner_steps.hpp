@@ -19,6 +19,11 @@ double courant_number(const FluidProblem& problem, const FluidState& state,
                       const BoundaryValues& boundary, std::span<const double> voidage,
                       double window);
 
+/// Largest ratio of drag and viscous stress to inertia, B Δt/(ρ ε V) + Σ μ g Δt/(ρ V), in cells
+/// with few faces; 0 on other meshes. Those cells take parts of both from the corrector before,
+/// which has been stable up to some 1000.
+double stiffness_number(const FluidProblem& problem, const SolidsInput& solids, double window);
+
 /// The number of inner steps for this Courant number. Throws NumericsError if more than 1000 would
 /// be needed, with the window that would need one.
 int count_inner_steps(double courant, double limit, const Window& window);

@@ -68,6 +68,8 @@ struct VansSolver::Impl {
   void warn_once();
   void advance_step(const FluidState& from, const Window& step, const SolidsInput& solids,
                     const Progress& progress, FluidState& to);
+  [[noreturn]] void refuse(const Window& window, int count, const SolidsInput& solids,
+                           const NumericsError& error) const;
   void finish_window(const Window& window, int inner_steps);
 
   FluidProblem problem;
@@ -128,6 +130,23 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
   ++report.inner_steps;
   report.second_order_steps += time.two_steps() ? 1 : 0;
   check_finite(problem.stencil, to, window.step);
+}
+
+/// The error of a step, with the step's number and, on cells with few faces, the limit that it may
+/// have met.
+void VansSolver::Impl::refuse(const Window& window, int count, const SolidsInput& solids,
+                              const NumericsError& error) const {
+  std::string text = fmt::format("fluid, step {} (coupling.window {:.3g} s in {} inner steps): {}",
+                                 window.step, window.length, count, error.what());
+  const double stiffness = stiffness_number(problem, solids, window.length / count);
+  if (stiffness > 0) {
+    text += fmt::format(
+        "; cells with fewer than six faces (tetrahedra, prisms, pyramids) bear drag and viscous "
+        "stress of some 1000 times the inertia of a step, here it is {:.3g} times; use hexahedra "
+        "or polyhedra there, or a coupling.window of {:.2g} s",
+        stiffness, std::min(window.length, window.length / count * 1000 / stiffness));
+  }
+  throw NumericsError("{}", text);
 }
 
 /// The window's mean flux balances what the voidage changed by, to the last digit.
@@ -209,7 +228,11 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
     const SolidsInput at_end{last ? solids.voidage : std::span<const double>(self.voidage),
                              solids.drag_coefficient, solids.drag_source};
     FluidState& to = from == &self.candidate ? self.between : self.candidate;
-    self.advance_step(*from, inner_window(window, number, count), at_end, progress, to);
+    try {
+      self.advance_step(*from, inner_window(window, number, count), at_end, progress, to);
+    } catch (const NumericsError& error) {
+      self.refuse(window, count, solids, error);
+    }
     if (count > 1) add_to_means(to, number, count, self.means);
     from = &to;
   }

@@ -5,7 +5,7 @@
 
 #include "cfd_server/discretisation/gradient.hpp"
 #include "cfd_server/discretisation/reconstruction.hpp"
-#include "cfd_server/vans/cell_balance.hpp"
+#include "cfd_server/vans/kinked_gradient.hpp"
 #include "cfd_server/vans/legacy_continuity.hpp"
 #include "proto/base/errors.hpp"
 
@@ -27,17 +27,6 @@ std::span<const double> pressure_share(const Step& step, const WindowFields& w) 
   return step.problem.model == PressureModel::a ? step.solids.voidage : std::span(w.ones);
 }
 
-/// ∇p by least squares, for the non-orthogonal part of the faces' pressure force.
-void evaluate_pressure_slope(const FluidProblem& problem, WindowFields& w) {
-  const Stencil& s = problem.stencil;
-  for (std::size_t b = 0; b < w.pressure_jump.size(); ++b) {
-    const bool given = problem.conditions.kind[b] == FaceKind::pressure;
-    const int cell = s.owner[b + static_cast<std::size_t>(s.internal_faces)];
-    w.pressure_jump[b] = given ? w.boundary.pressure[b] - w.pressure[cell] : 0.0;
-  }
-  gradient(s, problem.pressure_gradient, w.pressure, w.pressure_jump, w.pressure_slope);
-}
-
 /// C(u), ε u and the gradients of the velocity in hand.
 void evaluate_cells(const Step& step, WindowFields& w) {
   const FluidProblem& problem = step.problem;
@@ -56,12 +45,11 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   }
   boundary_jump(s, problem.conditions, w.boundary.superficial, w.superficial, w.jump);
   gradient(s, problem.gradient, w.superficial, w.jump, w.superficial_gradient);
-  if (s.orthogonal) return;
-  evaluate_pressure_slope(problem, w);
 }
 
 /// Pressure for the source in hand, and the flux that it drives.
-void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
+void solve_continuity(const Step& step, WindowFields& w, FluidReport& report) {
+  const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   LapClock clock;
   assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
@@ -71,6 +59,11 @@ void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport&
   report.seconds.pressure += clock.lap();
   std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
+  if (!s.orthogonal) {
+    kinked_gradient(
+        s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time, w.slope_coefficients,
+        {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux}, w.pressure_slope);
+  }
   report.seconds.assembly += clock.lap();
 }
 
@@ -85,15 +78,15 @@ void evaluate_explicit_flux(const FluidProblem& problem, std::span<const double>
 }
 
 /// Pressure and fluxes; on a non-orthogonal mesh again with the slope of the pressure just found.
-void solve_fluxes(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
+void solve_fluxes(const Step& step, WindowFields& w, FluidReport& report) {
+  const FluidProblem& problem = step.problem;
   evaluate_explicit_flux(problem, w.flux, w, report);
-  if (problem.stencil.orthogonal) return solve_continuity(problem, w, report);
+  if (problem.stencil.orthogonal) return solve_continuity(step, w, report);
   std::ranges::copy(w.flux, w.flux_before.begin());
-  solve_continuity(problem, w, report);
+  solve_continuity(step, w, report);
   for (int again = 0; again < problem.numerics.non_orthogonal_correctors; ++again) {
-    evaluate_pressure_slope(problem, w);
     evaluate_explicit_flux(problem, w.flux_before, w, report);
-    solve_continuity(problem, w, report);
+    solve_continuity(step, w, report);
   }
 }
 
@@ -118,7 +111,7 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
     legacy_source(s, step.old_state.voidage, step.solids.voidage, w.voidage_gradient,
                   w.interstitial, step.window.length, w.source);
     std::ranges::copy(w.flux, w.flux_before.begin());
-    solve_continuity(problem, w, report);
+    solve_continuity(step, w, report);
     ++report.legacy_iterations;
     change = 0;
     for (int f = 0; f < s.faces; ++f)
@@ -161,12 +154,6 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   problem.gradient = AxisVectors(
       gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false)), lattice);
   problem.reconstruction = AxisVectors(reconstruction_coefficients(problem.stencil), lattice);
-  if (!problem.stencil.orthogonal) {
-    problem.pressure_gradient =
-        gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, true));
-  }
-  if (!problem.stencil.few_faces.empty())
-    problem.cell_balance = cell_balance_coefficients(problem.stencil);
   if (problem.continuity == Continuity::legacy) {
     for (const FluidRegion& region : problem.regions.list) {
       if (region.open) continue;
@@ -209,12 +196,12 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
   if (!s.orthogonal) {
     pressure_slope.assign(cell_count, Vector3::Zero());
+    slope_coefficients.assign(s.side_face.size(), Vector3::Zero());
     flux_before.assign(face_count, 0.0);
   }
   velocity_gradient.assign(cell_count, Matrix3::Zero());
   superficial_gradient.assign(cell_count, Matrix3::Zero());
   jump.assign(boundary_count, Vector3::Zero());
-  pressure_jump.assign(boundary_count, 0.0);
 }
 
 void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
@@ -261,6 +248,11 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
                     {}, w.momentum);
   assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w), old_state,
                  time, w.faces);
+  if (!s.orthogonal) {
+    kinked_gradient_coefficients(s, w.momentum, voidage, pressure_share(step, w),
+                                 w.slope_coefficients);
+    std::ranges::copy(old_state.pressure_gradient, w.pressure_slope.begin());
+  }
   assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
   report.seconds.assembly += clock.lap();
   w.pressure_solver->setup(w.matrix);
@@ -274,7 +266,7 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   evaluate_cells(step, w);
   report.seconds.assembly += clock.lap();
   if (problem.continuity == Continuity::conservative) {
-    solve_fluxes(problem, w, report);
+    solve_fluxes(step, w, report);
   } else {
     evaluate_explicit_flux(problem, w.flux, w, report);
     solve_legacy_continuity(step, w, report);
@@ -285,15 +277,12 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
+  if (!s.few_faces.empty()) {
+    balance_cells(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before,
+                  w.pressure_slope, w.velocity);
+  }
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
-  if (!s.few_faces.empty()) {
-    balance_cells(s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time,
-                  problem.cell_balance,
-                  {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux,
-                   w.pressure_slope, w.force, w.velocity_before},
-                  w.velocity, w.closing_gradient);
-  }
   report.seconds.closure += clock.lap();
 }
 

@@ -25,10 +25,8 @@ struct FluidProblem {
   FluidNumerics numerics;
   Continuity continuity = Continuity::conservative;
   PressureModel model = PressureModel::a;
-  AxisVectors gradient;                    ///< least-squares coefficients of velocities, one a side
-  std::vector<Vector3> pressure_gradient;  ///< of the pressure; empty on orthogonal meshes
-  AxisVectors reconstruction;              ///< one a side
-  std::vector<Vector3> cell_balance;       ///< one a side; empty without cells of few faces
+  AxisVectors gradient;        ///< least-squares coefficients of velocities, one a side
+  AxisVectors reconstruction;  ///< one a side
 };
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh);
@@ -57,18 +55,18 @@ struct WindowFields {
   std::vector<double> mass_flux;      ///< Φ [kg/s], one a face
   std::vector<double> pressure;       ///< p − level [Pa]
   std::vector<double> rhs;
-  std::vector<Vector3> old_superficial;   ///< ε^n u^n
-  std::vector<Vector3> superficial;       ///< ε u of the last corrector
-  std::vector<Vector3> velocity;          ///< u of the last corrector
-  std::vector<Vector3> velocity_before;   ///< u from which it started
-  std::vector<Vector3> force;             ///< C(velocity_before) [N]
-  std::vector<Vector3> specific_force;    ///< (C + S)/(χ V) [N/m³]
-  std::vector<Vector3> closing_gradient;  ///< ∇p that closes each cell's momentum [Pa/m]
-  std::vector<Vector3> pressure_slope;    ///< least-squares ∇p [Pa/m], non-orthogonal meshes only
+  std::vector<Vector3> old_superficial;     ///< ε^n u^n
+  std::vector<Vector3> superficial;         ///< ε u of the last corrector
+  std::vector<Vector3> velocity;            ///< u of the last corrector
+  std::vector<Vector3> velocity_before;     ///< u from which it started
+  std::vector<Vector3> force;               ///< C(velocity_before) [N]
+  std::vector<Vector3> specific_force;      ///< (C + S)/(χ V) [N/m³]
+  std::vector<Vector3> closing_gradient;    ///< ∇p that closes each cell's momentum [Pa/m]
+  std::vector<Vector3> pressure_slope;      ///< kinked ∇p [Pa/m], non-orthogonal meshes only
+  std::vector<Vector3> slope_coefficients;  ///< of it, one a side
   std::vector<Matrix3> velocity_gradient;
   std::vector<Matrix3> superficial_gradient;
-  std::vector<Vector3> jump;          ///< one a boundary face
-  std::vector<double> pressure_jump;  ///< one a boundary face
+  std::vector<Vector3> jump;  ///< one a boundary face
 
   // continuity: legacy; empty else
   std::vector<double> face_scale;         ///< one a face: 1/ε_f

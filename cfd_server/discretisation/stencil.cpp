@@ -87,7 +87,7 @@ bool has_equal_cells(const Lattice& lattice) {
 
 }  // namespace
 
-Stencil make_stencil(const Mesh& mesh) {
+Stencil make_stencil(const Mesh& mesh, int threads) {
   Stencil s;
   s.cells = mesh.cells();
   s.faces = mesh.faces();
@@ -100,6 +100,8 @@ Stencil make_stencil(const Mesh& mesh) {
   add_sides(mesh, s);
   s.centred = mesh.lattice.has_value();
   s.uniform = mesh.lattice && has_equal_cells(*mesh.lattice);
+  s.threads = threads;
+  s.shares = share_cells(s.cells, threads, s.owner, s.neighbour);
   return s;
 }
 

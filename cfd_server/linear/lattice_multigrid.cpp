@@ -146,6 +146,10 @@ class LatticeMultigrid final : public PressureSolver {
       spacing[axis] = mean[axis] > 0 ? std::sqrt(strongest / mean[axis]) : 1e150;
     if (strongest == 0) spacing = {1, 1, 1};
     HYPRE_StructPFMGSetDxyz(cycle_, spacing.data());
+    // PFMG saves time by smoothing only where it coarsens an axis anew. In tall cells, with two
+    // strong axes beside a weak one, that takes 62 iterations instead of 13.
+    const double weakest = std::max({spacing[0], spacing[1], spacing[2]});
+    HYPRE_StructPFMGSetSkipRelax(cycle_, weakest > 10 ? 0 : 1);
   }
 
   void destroy_cycle() {

@@ -121,8 +121,7 @@ void close(const Step& step, WindowFields& w, FluidReport& report) {
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
-  problem.stencil = make_stencil(mesh);
-  problem.stencil.threads = threads_for(scene.fluid.numerics.threads, mesh.cells());
+  problem.stencil = make_stencil(mesh, threads_for(scene.fluid.numerics.threads, mesh.cells()));
   problem.conditions = read_boundaries(scene, mesh, problem.stencil);
   problem.regions = find_regions(problem.stencil, problem.conditions);
   problem.fluid = {scene.fluid.density, scene.fluid.viscosity, scene.fluid.numerics.convection};

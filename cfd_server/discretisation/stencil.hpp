@@ -45,6 +45,11 @@ struct Stencil {
   int threads = 1;                ///< that share each loop over cells or faces
   std::vector<CellShare> shares;  ///< one a thread
 
+  /// One a cell: 1 where the cell has too few faces for its velocity to be rebuilt from their
+  /// fluxes (tetrahedra, prisms, pyramids: fewer than two for each component). Empty if there is
+  /// none.
+  std::vector<std::uint8_t> few_faces;
+
   bool orthogonal = false;  ///< every k vanishes
   bool centred =
       false;  ///< opposite faces lie at equal distances from the cell's centre (lattices)

@@ -68,6 +68,25 @@ void add_cross_diffusion(const Stencil& s, const TransportCoefficients& c, const
   });
 }
 
+/// μ ε_f [(∇u)ᵀ·A − 2/3 (∇·u) A]: the part of the stress that vanishes where ε μ is uniform.
+void add_transposed_stress(const Stencil& s, const TransportCoefficients& c, const CellShare& share,
+                           std::span<const Matrix3> gradient, std::span<Vector3> force) {
+  const auto part = [&](int f, const Matrix3& at_face) -> Vector3 {
+    const double viscous = c.diffusion[f] / s.conductance[f];  // μ ε_f; 0 where no value is given
+    return viscous * (at_face.transpose() * s.area[f] - (2.0 / 3.0 * at_face.trace()) * s.area[f]);
+  };
+  for_faces(share, 0, s.internal_faces, [&](int f) {
+    const int p = s.owner[f];
+    const int n = s.neighbour[f];
+    const double w = s.weight[f];
+    const Vector3 through = part(f, (1 - w) * gradient[p] + w * gradient[n]);
+    if (share.has(p)) force[p] += through;
+    if (share.has(n)) force[n] -= through;
+  });
+  for_faces(share, s.internal_faces, s.faces,
+            [&](int f) { force[s.owner[f]] += part(f, gradient[s.owner[f]]); });
+}
+
 }  // namespace
 
 void finish_coefficients(TransportCoefficients& c, int threads) {
@@ -90,6 +109,7 @@ void transport_force(const Stencil& s, const TransportCoefficients& c, Convectio
     if (scheme != Convection::upwind)
       add_higher_order(s, c, share, scheme, velocity, gradient, force);
     if (!s.orthogonal) add_cross_diffusion(s, c, share, gradient, force);
+    add_transposed_stress(s, c, share, gradient, force);
   }
 }
 

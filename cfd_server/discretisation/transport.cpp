@@ -101,9 +101,10 @@ void finish_coefficients(TransportCoefficients& c, int threads) {
 void transport_force(const Stencil& s, const TransportCoefficients& c, Convection scheme,
                      std::span<const Vector3> velocity, std::span<const Vector3> boundary_jump,
                      std::span<const Matrix3> gradient, std::span<Vector3> force) {
+  const int shares = static_cast<int>(s.shares.size());
 #pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int thread = 0; thread < s.threads; ++thread) {
-    const CellShare& share = s.shares[static_cast<std::size_t>(thread)];
+  for (int i = 0; i < shares; ++i) {
+    const CellShare& share = s.shares[static_cast<std::size_t>(i)];
     std::fill(force.begin() + share.first, force.begin() + share.last, Vector3::Zero());
     add_lowest_order(s, c, share, velocity, boundary_jump, force);
     if (scheme != Convection::upwind)

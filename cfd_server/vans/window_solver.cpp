@@ -63,32 +63,36 @@ void evaluate_cells(const Step& step, WindowFields& w) {
 /// Pressure for the source in hand, and the flux that it drives.
 void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
-  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
   LapClock clock;
+  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
+  report.seconds.assembly += clock.lap();
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
   report.seconds.pressure += clock.lap();
   std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
+  report.seconds.assembly += clock.lap();
 }
 
 void evaluate_explicit_flux(const FluidProblem& problem, std::span<const double> last_flux,
-                            WindowFields& w) {
+                            WindowFields& w, FluidReport& report) {
+  LapClock clock;
   explicit_flux(
       problem.stencil, problem.conditions, w.boundary, w.faces,
       {w.specific_force, w.superficial, w.superficial_gradient, last_flux, w.pressure_slope},
       w.explicit_part);
+  report.seconds.assembly += clock.lap();
 }
 
 /// Pressure and fluxes; on a non-orthogonal mesh again with the slope of the pressure just found.
 void solve_fluxes(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
-  evaluate_explicit_flux(problem, w.flux, w);
+  evaluate_explicit_flux(problem, w.flux, w, report);
   if (problem.stencil.orthogonal) return solve_continuity(problem, w, report);
   std::ranges::copy(w.flux, w.flux_before.begin());
   solve_continuity(problem, w, report);
   for (int again = 0; again < problem.numerics.non_orthogonal_correctors; ++again) {
     evaluate_pressure_slope(problem, w);
-    evaluate_explicit_flux(problem, w.flux_before, w);
+    evaluate_explicit_flux(problem, w.flux_before, w, report);
     solve_continuity(problem, w, report);
   }
 }
@@ -195,17 +199,18 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
     values->assign(cell_count, Vector3::Zero());
   }
   if (problem.continuity == Continuity::legacy) {
-    for (auto* values : {&face_scale, &face_voidage, &interstitial_flux})
+    for (auto* values : {&face_scale, &face_voidage, &interstitial_flux, &flux_before})
       values->assign(face_count, 1.0);
     for (auto* values : {&voidage_gradient, &interstitial})
       values->assign(cell_count, Vector3::Zero());
     own_gradient.assign(cell_count, Matrix3::Zero());
   }
-  if (problem.continuity == Continuity::legacy || !s.orthogonal)
-    flux_before.assign(face_count, 0.0);
   if (problem.numerics.time == TimeScheme::bdf2) convecting.assign(face_count, 0.0);
   if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
-  if (!s.orthogonal) pressure_slope.assign(cell_count, Vector3::Zero());
+  if (!s.orthogonal) {
+    pressure_slope.assign(cell_count, Vector3::Zero());
+    flux_before.assign(face_count, 0.0);
+  }
   velocity_gradient.assign(cell_count, Matrix3::Zero());
   superficial_gradient = own_gradient.empty() ? velocity_gradient : own_gradient;
   jump.assign(boundary_count, Vector3::Zero());
@@ -266,15 +271,15 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   LapClock clock;
-  const double pressure_before = report.seconds.pressure;
   evaluate_cells(step, w);
+  report.seconds.assembly += clock.lap();
   if (problem.continuity == Continuity::conservative) {
     solve_fluxes(problem, w, report);
   } else {
-    evaluate_explicit_flux(problem, w.flux, w);
+    evaluate_explicit_flux(problem, w.flux, w, report);
     solve_legacy_continuity(step, w, report);
   }
-  report.seconds.assembly += clock.lap() - (report.seconds.pressure - pressure_before);
+  clock.lap();  // the solve has its own
   if (last) close(step, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
@@ -282,13 +287,14 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
+  if (!s.few_faces.empty()) {
+    balance_cells(s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time,
+                  problem.cell_balance,
+                  {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux,
+                   w.pressure_slope, w.force, w.velocity_before},
+                  w.velocity, w.closing_gradient);
+  }
   report.seconds.closure += clock.lap();
-  if (s.few_faces.empty()) return;
-  balance_cells(s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time,
-                problem.cell_balance,
-                {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux, w.pressure_slope,
-                 w.force, w.velocity_before},
-                w.velocity, w.closing_gradient);
 }
 
 void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {

@@ -183,8 +183,10 @@ void run_case(int wanted, int threads, const Options& options) {
     if (step > untimed)
       cost.add(solver.report(), spent, static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC);
   }
-  cost.print(cells, threads, scene.fluid.numerics.correctors + 1,
-             (peak_memory() - memory_before - bed.bytes()) / cells);
+  const FluidNumerics& numerics = scene.fluid.numerics;
+  const int solves =
+      (numerics.correctors + 1) * (options.general ? 1 + numerics.non_orthogonal_correctors : 1);
+  cost.print(cells, threads, solves, (peak_memory() - memory_before - bed.bytes()) / cells);
 }
 
 }  // namespace

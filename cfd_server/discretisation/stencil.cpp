@@ -101,7 +101,7 @@ bool has_equal_cells(const Lattice& lattice) {
 
 }  // namespace
 
-Stencil make_stencil(const Mesh& mesh) {
+Stencil make_stencil(const Mesh& mesh, int threads) {
   Stencil s;
   s.cells = mesh.cells();
   s.faces = mesh.faces();
@@ -115,6 +115,8 @@ Stencil make_stencil(const Mesh& mesh) {
   s.few_faces = find_few_faces(s);
   s.centred = mesh.lattice.has_value();
   s.uniform = mesh.lattice && has_equal_cells(*mesh.lattice);
+  s.threads = threads;
+  s.shares = share_cells(s.cells, threads, s.owner, s.neighbour);
   return s;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cfd_server/discretisation/axis_vectors.hpp"
+#include "cfd_server/discretisation/cell_shares.hpp"
 #include "proto/base/vector.hpp"
 #include "proto/mesh/mesh.hpp"
 
@@ -41,7 +42,8 @@ struct Stencil {
   std::vector<std::int8_t>
       side_sign;  ///< +1 where the cell owns the face, −1 where it is the neighbour
 
-  int threads = 1;  ///< that share each loop over cells or faces
+  int threads = 1;                ///< that share each loop over cells or faces
+  std::vector<CellShare> shares;  ///< one a thread
 
   /// One a cell: 1 where the cell has too few faces for its velocity to be rebuilt from their
   /// fluxes (tetrahedra, prisms, pyramids: fewer than two for each component). Empty if there is
@@ -57,7 +59,7 @@ struct Stencil {
 };
 
 /// Throws ConfigError naming the face if d·A is not positive inside the mesh.
-Stencil make_stencil(const Mesh& mesh);
+Stencil make_stencil(const Mesh& mesh, int threads = 1);
 
 /// Threads that pay on a mesh of this size: those wanted (0: all cores), but not less than some
 /// thousands of cells each.

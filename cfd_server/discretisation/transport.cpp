@@ -18,10 +18,23 @@ inline Vector3 higher_order_part(Convection scheme, const Vector3& step, const V
   return share * limited_step(2 * rise - step, step);
 }
 
-void add_higher_order(const Stencil& s, const TransportCoefficients& c, Convection scheme,
-                      std::span<const Vector3> velocity, std::span<const Matrix3> gradient,
+void add_lowest_order(const Stencil& s, const TransportCoefficients& c, const CellShare& share,
+                      std::span<const Vector3> velocity, std::span<const Vector3> boundary_jump,
                       std::span<Vector3> force) {
-  for (int f = 0; f < s.internal_faces; ++f) {
+  for_faces(share, 0, s.internal_faces, [&](int f) {
+    const Vector3 step = velocity[s.neighbour[f]] - velocity[s.owner[f]];
+    if (share.has(s.owner[f])) force[s.owner[f]] += c.into_owner[f] * step;
+    if (share.has(s.neighbour[f])) force[s.neighbour[f]] -= c.into_neighbour[f] * step;
+  });
+  for_faces(share, s.internal_faces, s.faces, [&](int f) {
+    force[s.owner[f]] += c.into_owner[f] * boundary_jump[f - s.internal_faces];
+  });
+}
+
+void add_higher_order(const Stencil& s, const TransportCoefficients& c, const CellShare& share,
+                      Convection scheme, std::span<const Vector3> velocity,
+                      std::span<const Matrix3> gradient, std::span<Vector3> force) {
+  for_faces(share, 0, s.internal_faces, [&](int f) {
     const int p = s.owner[f];
     const int n = s.neighbour[f];
     const bool out = c.mass_flux[f] >= 0;
@@ -29,47 +42,49 @@ void add_higher_order(const Stencil& s, const TransportCoefficients& c, Convecti
     const Vector3 step =
         out ? Vector3(velocity[n] - velocity[p]) : Vector3(velocity[p] - velocity[n]);
     const Vector3 along = out ? s.delta[f] : Vector3(-s.delta[f]);
-    const Vector3& to_face = out ? s.from_owner[f] : s.from_neighbour[f];
-    const double share = out ? s.weight[f] : 1 - s.weight[f];
+    const Vector3 to_face = out ? s.from_owner[f] : s.from_neighbour[f];
+    const double weight = out ? s.weight[f] : 1 - s.weight[f];
     const Vector3 part = c.mass_flux[f] * higher_order_part(scheme, step, gradient[upwind] * along,
-                                                            to_face, gradient[upwind], share);
-    force[p] -= part;
-    force[n] += part;
-  }
+                                                            to_face, gradient[upwind], weight);
+    if (share.has(p)) force[p] -= part;
+    if (share.has(n)) force[n] += part;
+  });
 }
 
-void add_cross_diffusion(const Stencil& s, const TransportCoefficients& c,
+void add_cross_diffusion(const Stencil& s, const TransportCoefficients& c, const CellShare& share,
                          std::span<const Matrix3> gradient, std::span<Vector3> force) {
-  for (int f = 0; f < s.faces; ++f) {
+  for_faces(share, 0, s.internal_faces, [&](int f) {
     const double viscous = c.diffusion[f] / s.conductance[f];  // μ ε_f
     const int p = s.owner[f];
-    if (f >= s.internal_faces) {
-      force[p] += viscous * (gradient[p] * s.cross[f]);
-      continue;
-    }
     const int n = s.neighbour[f];
     const double w = s.weight[f];
     const Vector3 part = viscous * (((1 - w) * gradient[p] + w * gradient[n]) * s.cross[f]);
-    force[p] += part;
-    force[n] -= part;
-  }
+    if (share.has(p)) force[p] += part;
+    if (share.has(n)) force[n] -= part;
+  });
+  for_faces(share, s.internal_faces, s.faces, [&](int f) {
+    const double viscous = c.diffusion[f] / s.conductance[f];
+    force[s.owner[f]] += viscous * (gradient[s.owner[f]] * s.cross[f]);
+  });
 }
 
 /// μ ε_f [(∇u)ᵀ·A − 2/3 (∇·u) A]: the part of the stress that vanishes where ε μ is uniform.
-void add_transposed_stress(const Stencil& s, const TransportCoefficients& c,
+void add_transposed_stress(const Stencil& s, const TransportCoefficients& c, const CellShare& share,
                            std::span<const Matrix3> gradient, std::span<Vector3> force) {
-  for (int f = 0; f < s.faces; ++f) {
+  const auto part = [&](int f, const Matrix3& at_face) -> Vector3 {
     const double viscous = c.diffusion[f] / s.conductance[f];  // μ ε_f; 0 where no value is given
+    return viscous * (at_face.transpose() * s.area[f] - (2.0 / 3.0 * at_face.trace()) * s.area[f]);
+  };
+  for_faces(share, 0, s.internal_faces, [&](int f) {
     const int p = s.owner[f];
-    Matrix3 at_face = gradient[p];
-    if (f < s.internal_faces) {
-      at_face = (1 - s.weight[f]) * at_face + s.weight[f] * gradient[s.neighbour[f]];
-    }
-    const Vector3 part =
-        viscous * (at_face.transpose() * s.area[f] - (2.0 / 3.0 * at_face.trace()) * s.area[f]);
-    force[p] += part;
-    if (f < s.internal_faces) force[s.neighbour[f]] -= part;
-  }
+    const int n = s.neighbour[f];
+    const double w = s.weight[f];
+    const Vector3 through = part(f, (1 - w) * gradient[p] + w * gradient[n]);
+    if (share.has(p)) force[p] += through;
+    if (share.has(n)) force[n] -= through;
+  });
+  for_faces(share, s.internal_faces, s.faces,
+            [&](int f) { force[s.owner[f]] += part(f, gradient[s.owner[f]]); });
 }
 
 }  // namespace
@@ -86,18 +101,17 @@ void finish_coefficients(TransportCoefficients& c, int threads) {
 void transport_force(const Stencil& s, const TransportCoefficients& c, Convection scheme,
                      std::span<const Vector3> velocity, std::span<const Vector3> boundary_jump,
                      std::span<const Matrix3> gradient, std::span<Vector3> force) {
-  std::ranges::fill(force, Vector3::Zero());
-  for (int f = 0; f < s.internal_faces; ++f) {
-    const Vector3 step = velocity[s.neighbour[f]] - velocity[s.owner[f]];
-    force[s.owner[f]] += c.into_owner[f] * step;
-    force[s.neighbour[f]] -= c.into_neighbour[f] * step;
+  const int shares = static_cast<int>(s.shares.size());
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int i = 0; i < shares; ++i) {
+    const CellShare& share = s.shares[static_cast<std::size_t>(i)];
+    std::fill(force.begin() + share.first, force.begin() + share.last, Vector3::Zero());
+    add_lowest_order(s, c, share, velocity, boundary_jump, force);
+    if (scheme != Convection::upwind)
+      add_higher_order(s, c, share, scheme, velocity, gradient, force);
+    if (!s.orthogonal) add_cross_diffusion(s, c, share, gradient, force);
+    add_transposed_stress(s, c, share, gradient, force);
   }
-  for (int f = s.internal_faces; f < s.faces; ++f) {
-    force[s.owner[f]] += c.into_owner[f] * boundary_jump[f - s.internal_faces];
-  }
-  if (scheme != Convection::upwind) add_higher_order(s, c, scheme, velocity, gradient, force);
-  if (!s.orthogonal) add_cross_diffusion(s, c, gradient, force);
-  add_transposed_stress(s, c, gradient, force);
 }
 
 }  // namespace fluxpact

@@ -173,15 +173,13 @@ class AlgebraicMultigrid final : public PressureSolver {
   static constexpr int iterations_of_setup = 10;
 
   void build() {
-    // hypre's Gauss-Seidel works on the threads' blocks: its result must not depend on their
-    // number.
-    const HypreThreads one(1);
+    const OneThread hypre;
     fresh_.reset();
     fresh_ = std::make_unique<Hierarchy>(stencil_, pattern_, values_, *current_, rhs_, solution_);
   }
 
   int solve(std::span<const double> rhs, std::span<double> x, double tolerance, int most) {
-    const HypreThreads one(1);
+    const OneThread hypre;
     Hierarchy& hierarchy = fresh_ ? *fresh_ : *kept_;
     const int iterations = gradients_.solve(
         *current_, rhs, x, tolerance, most, [&](std::span<const double> r, std::span<double> z) {

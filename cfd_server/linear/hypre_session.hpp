@@ -7,14 +7,14 @@ namespace fluxpact {
 /// that somebody else started is left to them to end.
 void start_hypre();
 
-/// Sets the number of threads for what hypre does meanwhile (Debian's hypre knows none; one built
-/// with OpenMP does).
-class HypreThreads {
+/// Holds OpenMP to one thread while hypre works. Debian's hypre knows no threads; in one that is
+/// built with OpenMP (2.26) even the structured cycle gives other bits for other numbers of them.
+class OneThread {
  public:
-  explicit HypreThreads(int threads);
-  ~HypreThreads();
-  HypreThreads(const HypreThreads&) = delete;
-  HypreThreads& operator=(const HypreThreads&) = delete;
+  OneThread();
+  ~OneThread();
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
 
  private:
   int before_;

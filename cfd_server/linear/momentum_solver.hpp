@@ -5,6 +5,11 @@
 // SIAM J. Sci. Stat. Comput. 13, 1992, 631-644): in a gas-solid window (small Courant number,
 // strong drag) it needs a handful of iterations, and unlike relaxation sweeps it does not stall
 // when viscosity or a large Courant number couples the whole mesh.
+//
+// Ours and not Eigen's (the same method and preconditioner, the three components one after the
+// other): on 512,000 cells Eigen's takes 1.5 times the processor time, 204 ms against 130 ms for 7
+// iterations and 796 ms against 533 ms for 29, because each component reads the matrix anew; the
+// two are level on 64,000. It knows no threads and cannot couple the components at slip walls.
 #pragma once
 
 #include <vector>

@@ -142,8 +142,7 @@ void close(const Step& step, WindowFields& w, FluidReport& report) {
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
-  problem.stencil = make_stencil(mesh);
-  problem.stencil.threads = threads_for(scene.fluid.numerics.threads, mesh.cells());
+  problem.stencil = make_stencil(mesh, threads_for(scene.fluid.numerics.threads, mesh.cells()));
   problem.conditions = read_boundaries(scene, mesh, problem.stencil);
   problem.regions = find_regions(problem.stencil, problem.conditions);
   problem.fluid = {scene.fluid.density, scene.fluid.viscosity, scene.fluid.numerics.convection};
@@ -191,6 +190,7 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
       values->assign(face_count, 1.0);
     for (auto* values : {&voidage_gradient, &interstitial})
       values->assign(cell_count, Vector3::Zero());
+    own_gradient.assign(cell_count, Matrix3::Zero());
   }
   if (problem.numerics.time == TimeScheme::bdf2) convecting.assign(face_count, 0.0);
   if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
@@ -200,7 +200,7 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
     flux_before.assign(face_count, 0.0);
   }
   velocity_gradient.assign(cell_count, Matrix3::Zero());
-  superficial_gradient.assign(cell_count, Matrix3::Zero());
+  superficial_gradient = own_gradient.empty() ? velocity_gradient : own_gradient;
   jump.assign(boundary_count, Vector3::Zero());
 }
 

@@ -64,9 +64,9 @@ struct WindowFields {
   std::vector<Vector3> closing_gradient;    ///< ∇p that closes each cell's momentum [Pa/m]
   std::vector<Vector3> pressure_slope;      ///< kinked ∇p [Pa/m], non-orthogonal meshes only
   std::vector<Vector3> slope_coefficients;  ///< of it, one a side
-  std::vector<Matrix3> velocity_gradient;
-  std::vector<Matrix3> superficial_gradient;
-  std::vector<Vector3> jump;  ///< one a boundary face
+  std::vector<Matrix3> velocity_gradient;   ///< until the superficial one takes its place
+  std::span<Matrix3> superficial_gradient;  ///< in the place of the former, or in own_gradient
+  std::vector<Vector3> jump;                ///< one a boundary face
 
   // continuity: legacy; empty else
   std::vector<double> face_scale;         ///< one a face: 1/ε_f
@@ -74,6 +74,7 @@ struct WindowFields {
   std::vector<double> interstitial_flux;  ///< Λ/ρ [m³/s], one a face
   std::vector<Vector3> voidage_gradient;
   std::vector<Vector3> interstitial;  ///< u rebuilt from Λ
+  std::vector<Matrix3> own_gradient;  ///< of ε u: that of u is needed to the end
 };
 
 /// One step: from the old state over `window`, with the solids at its end.

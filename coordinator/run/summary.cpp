@@ -72,6 +72,7 @@ void Summary::add(const AuditRow& row, const CommittedState& state, double recor
     pressure_drop_.add(pressure_drop(state));
     ++pressure_windows_;
   }
+  solver_iterations_ += row.solver_iterations;
   cfd_ += row.wall_cfd;
   dem_ += row.wall_dem;
   exchange_ += row.wall_exchange;
@@ -109,6 +110,9 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
         "Pa",
         drop, weight_per_area_);
   }
+  line("  fluid                 {:.3g} iterations of the pressure and {:.3g} ms a window",
+       static_cast<double>(solver_iterations_) / static_cast<double>(windows_),
+       1000 * cfd_ / static_cast<double>(windows_));
   const double steps = cfd_ + dem_ + exchange_ + record_;
   const auto share = [&](double part) { return 100 * part / std::max(steps, 1e-12); };
   line("  wall time             total {:.2f} s, {:.3g} ms a window", wall_seconds,

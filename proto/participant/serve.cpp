@@ -136,13 +136,12 @@ class Session {
   }
 
   void take_mesh(const Message& message) {
-    mesh_ = mesh_of(message);
-    participant_.configure(scene_, mesh_);
-    spdlog::info("ready for session {}: '{}', {} cells", session_, scene_.scene.name,
-                 mesh_.cells());
+    const Mesh mesh = mesh_of(message);
+    participant_.configure(scene_, mesh);
+    spdlog::info("ready for session {}: '{}', {} cells", session_, scene_.scene.name, mesh.cells());
     Message result;
     result.header.type = MessageType::result;
-    result.header.body["fingerprint"] = fingerprint_text(mesh_);
+    result.header.body["fingerprint"] = fingerprint_text(mesh);
     send(result);
   }
 
@@ -168,7 +167,6 @@ class Session {
   Participant& participant_;
   const ServeOptions& options_;
   Scene scene_;
-  Mesh mesh_;
   ParticipantChannel channel_;
   double deadline_;  ///< [s]
   SessionState state_ = SessionState::greeting;

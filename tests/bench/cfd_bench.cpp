@@ -3,13 +3,13 @@
 //
 //   cfd_bench [--cells 8000 64000 512000 2097152] [--threads 1 2] [--windows N] [--general]
 //
-// Each case runs in a process of its own, so that its peak memory is its own; the first windows
-// (set-up, start from rest) are not timed. One line a case: milliseconds a window (wall and
-// processor), cells times windows a second, share of each phase, iterations a solve, peak memory a
-// cell with the mesh.
+// Each case runs in a process of its own, so that its peak memory is its own (all but what the
+// bench itself holds); the first three windows are not timed. One line a case.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <cstdlib>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -29,6 +29,7 @@ constexpr double spacing = 5e-3;        // m
 constexpr double diameter = 2e-3;       // m
 constexpr double packed = 0.42;         // voidage
 constexpr double particle_speed = 0.2;  // m/s
+constexpr double slip = 1.0;            // m/s, for the drag
 
 struct Options {
   std::vector<int> cells{8000, 64000, 512000, 2097152};
@@ -67,34 +68,40 @@ Scene bed_scene(std::array<int, 3> cells, int threads) {
 /// The solids at time t: packed below half the height and outside a bubble, jumps within one cell;
 /// drag by Ergun (Chem. Eng. Prog. 48, 1952, 89-94) at a slip of 1 m/s.
 struct Bed {
+  std::vector<Vector3> centre;
+  std::vector<double> volume;
   std::vector<double> voidage;
   std::vector<double> drag;
   std::vector<Vector3> source;
 
-  void move_to(double time, const Mesh& mesh, const Scene& scene) {
+  explicit Bed(const Mesh& mesh)
+      : centre(mesh.cell_centres),
+        volume(mesh.cell_volumes),
+        voidage(volume.size()),
+        drag(volume.size()),
+        source(volume.size()) {}
+
+  void move_to(double time, const Scene& scene) {
     const Vector3 top = scene.fluid.mesh.box.upper;
     const double width = std::min(top.x(), top.z());
     const Vector3 bubble(0.5 * top.x(), 0.5 * top.y(), 0.25 * top.z() + particle_speed * time);
-    voidage.resize(mesh.cell_volumes.size());
-    drag.resize(voidage.size());
-    source.resize(voidage.size());
     for (std::size_t cell = 0; cell < voidage.size(); ++cell) {
-      const Vector3& at = mesh.cell_centres[cell];
+      const Vector3& at = centre[cell];
       const double surface = 0.5 * top.z() + 0.02 * top.z() * std::cos(20 * at.x() / width) +
                              particle_speed * time - at.z();
       const double from_bubble = (at - bubble).norm() - 0.12 * width;
       const double filled = std::clamp(std::min(surface, from_bubble) / spacing + 0.5, 0.0, 1.0);
       const double solids = (1 - packed) * filled;
       const double empty = 1 - solids;
-      const double slip = 1.0;
       voidage[cell] = empty;
-      drag[cell] = mesh.cell_volumes[cell] *
+      drag[cell] = volume[cell] *
                    (150 * solids * solids * scene.fluid.viscosity / (empty * diameter * diameter) +
                     1.75 * scene.fluid.density * solids * slip / diameter);
       source[cell] = drag[cell] * Vector3(0, 0, particle_speed);
     }
   }
   SolidsInput view() const { return {voidage, drag, source}; }
+  double bytes() const { return 72.0 * static_cast<double>(volume.size()); }
 };
 
 /// Peak resident memory of this process [B].
@@ -113,57 +120,73 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Sums over the timed windows.
+struct Cost {
+  int windows = 0;
+  double wall = 0;       // s
+  double best = 1e300;   // s, of one window
+  double processor = 0;  // s
+  PhaseSeconds phases;
+  int iterations = 0;
+  int predictor_iterations = 0;
+
+  void add(const FluidReport& report, double wall_seconds, double processor_seconds) {
+    ++windows;
+    wall += wall_seconds;
+    best = std::min(best, wall_seconds);
+    processor += processor_seconds;
+    phases.predictor += report.seconds.predictor;
+    phases.assembly += report.seconds.assembly;
+    phases.setup += report.seconds.setup;
+    phases.pressure += report.seconds.pressure;
+    phases.closure += report.seconds.closure;
+    iterations += report.iterations;
+    predictor_iterations += report.predictor_iterations;
+  }
+
+  void print(int cells, int threads, int solves, double bytes_per_cell) const {
+    const double rest =
+        wall - phases.predictor - phases.assembly - phases.setup - phases.pressure - phases.closure;
+    const auto share = [&](double part) { return 100 * part / wall; };
+    fmt::print(
+        "{:>8} {:>3} | {:>9.2f} {:>9.2f} {:>9.2f} | {:>7.2f} | {:>5.1f} {:>5.1f} {:>5.1f} {:>5.1f} "
+        "{:>5.1f} {:>5.1f} | {:>5.1f} {:>5.1f} | {:>6.0f}\n",
+        cells, threads, 1e3 * wall / windows, 1e3 * best, 1e3 * processor / windows,
+        1e-6 * cells * windows / wall, share(phases.predictor), share(phases.assembly),
+        share(phases.setup), share(phases.pressure), share(phases.closure), share(rest),
+        static_cast<double>(iterations) / (solves * windows),
+        static_cast<double>(predictor_iterations) / windows, bytes_per_cell);
+  }
+};
+
 void run_case(int wanted, int threads, const Options& options) {
+  constexpr int untimed = 3;
   const double memory_before = peak_memory();
-  const auto shape = shape_of(wanted);
-  const Scene scene = bed_scene(shape, threads);
-  Mesh mesh = make_box(scene.fluid.mesh);
-  if (options.general) mesh = perturbed(mesh, Vector3::Constant(spacing), 0.15, 1);
-  const int cells = mesh.cells();
-  Bed bed;
-  bed.move_to(0, mesh, scene);
-  const double memory_of_bed = 40.0 * cells;  // not the server's: messages stand in their place
-  VansSolver solver(scene, mesh);
+  const Scene scene = bed_scene(shape_of(wanted), threads);
+  auto mesh = std::make_unique<Mesh>(make_box(scene.fluid.mesh));
+  if (options.general) *mesh = perturbed(*mesh, Vector3::Constant(spacing), 0.15, 1);
+  const int cells = mesh->cells();
+  Bed bed(*mesh);
+  bed.move_to(0, scene);
+  VansSolver solver(scene, *mesh);
+  mesh.reset();  // as the server does
   solver.start(bed.voidage);
   const int windows = options.windows > 0 ? options.windows : std::clamp(4000000 / cells, 3, 200);
-  constexpr int first = 3;
-  double wall = 0;
-  double processor = 0;
-  double best = INFINITY;
-  int solves = 0;
-  PhaseSeconds sum;
-  double iterations = 0;
-  double predictor = 0;
-  for (int step = 1; step <= first + windows; ++step) {
-    bed.move_to(step * window, mesh, scene);
+  Cost cost;
+  for (int step = 1; step <= untimed + windows; ++step) {
+    bed.move_to(step * window, scene);
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t clock = std::clock();
     solver.advance({step, (step - 1) * window, window}, bed.view(), {});
     const double spent = seconds_since(start);
     solver.commit();
-    if (step <= first) continue;
-    wall += spent;
-    best = std::min(best, spent);
-    processor += static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
-    const FluidReport& report = solver.report();
-    sum.predictor += report.seconds.predictor;
-    sum.assembly += report.seconds.assembly;
-    sum.setup += report.seconds.setup;
-    sum.pressure += report.seconds.pressure;
-    sum.closure += report.seconds.closure;
-    iterations += report.iterations;
-    predictor += report.predictor_iterations;
-    solves += scene.fluid.numerics.correctors + 1;
+    if (step > untimed)
+      cost.add(solver.report(), spent, static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC);
   }
-  const double rest = wall - sum.predictor - sum.assembly - sum.setup - sum.pressure - sum.closure;
-  const auto share = [&](double part) { return 100 * part / wall; };
-  fmt::print(
-      "{:>8} {:>2} | {:>9.2f} {:>9.2f} {:>9.2f} {:>6.2f} | {:>5.1f} {:>5.1f} {:>5.1f} {:>5.1f} "
-      "{:>5.1f} {:>5.1f} | {:>5.1f} {:>5.1f} | {:>6.0f}\n",
-      cells, threads, 1e3 * wall / windows, 1e3 * best, 1e3 * processor / windows,
-      1e-6 * cells * windows / wall, share(sum.predictor), share(sum.assembly), share(sum.setup),
-      share(sum.pressure), share(sum.closure), share(rest), iterations / solves,
-      predictor / windows, (peak_memory() - memory_before - memory_of_bed) / cells);
+  const FluidNumerics& numerics = scene.fluid.numerics;
+  const int solves =
+      (numerics.correctors + 1) * (options.general ? 1 + numerics.non_orthogonal_correctors : 1);
+  cost.print(cells, threads, solves, (peak_memory() - memory_before - bed.bytes()) / cells);
 }
 
 }  // namespace
@@ -176,9 +199,17 @@ int main(int argc, char** argv) {
   app.add_option("--windows", options.windows, "Timed windows; 0: by size");
   app.add_flag("--general", options.general, "Points moved at random: no lattice");
   CLI11_PARSE(app, argc, argv);
+  // Threads that wait sleep soon, as the coordinator has it for its servers.
+  if (std::getenv("GOMP_SPINCOUNT") == nullptr && std::getenv("OMP_WAIT_POLICY") == nullptr) {
+    setenv("GOMP_SPINCOUNT", "10000", 1);
+    execv("/proc/self/exe", argv);
+  }
   fmt::print(
-      "   cells  t |   ms/win      best  cpu ms/w  Mc*w/s | share %: predictor assembly setup "
-      "pressure closure rest | iterations a solve, predictor | B/cell\n");
+      "                |        ms a window           | M cells *  | share of the time, %          "
+      "      "
+      "| iterations   | bytes\n"
+      "   cells    thr |      wall      best processor | windows/s | predictor, assembly, set-up, "
+      "pressure, closure, rest | a solve, predictor | a cell\n");
   std::fflush(stdout);
   int failed = 0;
   for (const int cells : options.cells) {

@@ -1,5 +1,7 @@
 #include "cfd_server/backends/native/fluid_participant.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 
 #include "proto/base/errors.hpp"
@@ -59,6 +61,13 @@ void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
   out.add(field::impulse_taken, std::span<const Vector3>(impulse_));
   out.add_number(field::solver_iterations, solver().report().iterations);
   out.add_number(field::closure_correction, solver().report().closure_correction);
+  const FluidReport& report = solver().report();
+  spdlog::debug(
+      "step {}: {} pressure iterations in {:.3g} ms after {:.3g} ms of set-up; predictor {:.3g} "
+      "ms, "
+      "assembly {:.3g} ms, closure {:.3g} ms",
+      window.step, report.iterations, 1e3 * report.seconds.pressure, 1e3 * report.seconds.setup,
+      1e3 * report.seconds.predictor, 1e3 * report.seconds.assembly, 1e3 * report.seconds.closure);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
   out.add_number(field::wall_seconds, spent.count());
 }

@@ -5,9 +5,11 @@
 #include <random>
 
 #include "cfd_server/backends/native/fluid_participant.hpp"
+#include "cfd_server/discretisation/stencil.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/field_names.hpp"
 #include "tests/unit/cfd_server/fluid_case.hpp"
+#include "tests/unit/cfd_server/perturbed_box.hpp"
 
 namespace fluxpact {
 namespace {
@@ -66,6 +68,44 @@ TEST(Transaction, a_repeated_window_gives_the_same_bits) {
     solver.commit();
     other.commit();
   }
+}
+
+/// Two windows of a bed large enough for three threads.
+FluidState after_two_windows(bool lattice, int threads) {
+  FluidCase c({33, 32, 32}, {0.33, 0.32, 0.32});
+  c.side("inlet", Side::z_min, superficial_inlet({0, 0, 1}));
+  c.side("outlet", Side::z_max, pressure_outlet());
+  c.scene.fluid.initial.superficial = Vector3(0, 0, 1);
+  c.scene.fluid.numerics.pressure_tolerance = 1e-6;
+  c.scene.fluid.numerics.threads = threads;
+  c.make_mesh();
+  if (!lattice) c.mesh = perturbed(c.mesh, Vector3::Constant(0.01), 0.1, 1);
+  VansSolver solver(c.scene, c.mesh);
+  solver.start(random_bed(c.mesh, 0).voidage);
+  for (unsigned step = 1; step <= 2; ++step)
+    run_window(solver, random_bed(c.mesh, step), static_cast<int>(step), 1e-4);
+  return solver.committed();
+}
+
+TEST(Threads, give_the_same_bits_for_any_number) {
+  ASSERT_EQ(threads_for(3, 33 * 32 * 32), 3);
+  for (const bool lattice : {true, false}) {
+    const FluidState one = after_two_windows(lattice, 1);
+    for (const int threads : lattice ? std::vector{2, 3} : std::vector{3}) {
+      const FluidState many = after_two_windows(lattice, threads);
+      EXPECT_EQ(one.face_flux, many.face_flux);
+      EXPECT_EQ(one.velocity, many.velocity);
+      EXPECT_EQ(one.pressure, many.pressure);
+      EXPECT_EQ(one.pressure_gradient, many.pressure_gradient);
+    }
+  }
+}
+
+TEST(Threads, are_not_started_for_a_few_cells) {
+  EXPECT_EQ(threads_for(8, 8000), 1);
+  EXPECT_EQ(threads_for(8, 64000), 6);
+  EXPECT_EQ(threads_for(2, 1000000), 2);
+  EXPECT_GE(threads_for(0, 1000000), 1);
 }
 
 TEST(Transaction, nothing_to_commit_is_an_error) {

@@ -39,6 +39,14 @@ void check_file(const std::filesystem::path& path) {
   }
 }
 
+/// A relative path starts at the folder of the scene; absolute, it means the same in the recorded
+/// scene.
+void resolve_path(std::optional<MeshFileSettings>& file, const std::filesystem::path& scene) {
+  if (!file) return;
+  const std::filesystem::path path = std::filesystem::absolute(scene).parent_path() / file->path;
+  file->path = path.lexically_normal().string();
+}
+
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
@@ -50,7 +58,10 @@ Scene load_scene(const std::filesystem::path& path, const std::vector<std::strin
     throw SystemError("{}: the scene cannot be read: {}; check the rights of the file",
                       path.string(), std::generic_category().message(errno));
   }
-  return read_scene(text, path.string(), overrides);
+  Scene scene = read_scene(text, path.string(), overrides);
+  resolve_path(scene.fluid.mesh.polymesh, path);
+  resolve_path(scene.fluid.mesh.gmsh, path);
+  return scene;
 }
 
 }  // namespace fluxpact

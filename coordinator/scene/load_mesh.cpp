@@ -29,16 +29,18 @@ void check_path(const std::string& key, const std::filesystem::path& path, bool 
 Mesh read_mesh(const MeshFileSettings& file, bool polymesh) {
   const std::string key = polymesh ? "fluid.mesh.polymesh" : "fluid.mesh.gmsh";
   check_path(key, file.path, polymesh);
-  MeshTopology mesh =
-      polymesh ? read_polymesh(file.path, file.scale) : read_gmsh(file.path, file.scale);
   try {
+    MeshTopology mesh =
+        polymesh ? read_polymesh(file.path, file.scale) : read_gmsh(file.path, file.scale);
     constexpr double tolerance = 1e-4;  // of a face's size: files may carry few digits
     for (const JoinSettings& pair : file.periodic) {
       mesh = join_periodic(std::move(mesh), pair.patches[0], pair.patches[1], tolerance);
     }
     return with_geometry(std::move(mesh));
   } catch (const ConfigError& error) {
-    throw ConfigError("{}: {}", file.path, error.what());
+    const std::string text = error.what();
+    if (!text.starts_with("mesh: ")) throw;  // the readers name file and line themselves
+    throw ConfigError("{}: {}", file.path, text);
   }
 }
 

@@ -17,7 +17,9 @@ std::span<const int> points_of_face(const MeshTopology& mesh, int face) {
   return std::span(mesh.face_points).subspan(first, last - first);
 }
 
-/// Area vectors and centroids: triangles about the mean of the face's points.
+/// Area vectors and centroids: triangles about the mean of the face's points. The centroid is taken
+/// in the plane through that mean across the area vector: so the pyramids from any apex over the
+/// centroids have exactly the volume of those over the triangles, also where the face is warped.
 void add_face_geometry(Mesh& mesh, MeshFaults& faults) {
   mesh.face_areas.reserve(mesh.owner.size());
   mesh.face_centres.reserve(mesh.owner.size());
@@ -40,6 +42,7 @@ void add_face_geometry(Mesh& mesh, MeshFaults& faults) {
       const Vector3& b = mesh.points[ring[(i + 1) % ring.size()]];
       moment += 0.5 * (a - mean).cross(b - mean).dot(area) / size * ((a + b + mean) / 3.0 - mean);
     }
+    moment -= moment.dot(area) / area.squaredNorm() * area;
     mesh.face_areas.push_back(area);
     mesh.face_centres.push_back(mean + moment / size);
   }

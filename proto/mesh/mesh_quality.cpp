@@ -45,8 +45,7 @@ void measure_cells(const Mesh& mesh, MeshQuality& quality) {
       const Vector3& area = mesh.face_areas[mesh.cell_faces[i]];
       extent += area * area.transpose() / area.norm();
     }
-    Eigen::SelfAdjointEigenSolver<Matrix3> solver;
-    solver.computeDirect(extent, Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<Matrix3> solver(extent, Eigen::EigenvaluesOnly);
     const Vector3& values = solver.eigenvalues();  // ascending
     raise(quality.aspect_ratio, values[2] / values[0], cell, mesh.cell_centres[cell]);
     smallest = std::min(smallest, mesh.cell_volumes[cell]);

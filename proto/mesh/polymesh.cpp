@@ -229,6 +229,9 @@ MeshTopology read_polymesh(const std::filesystem::path& folder, double scale) {
   read_cells(folder, mesh);
   const std::vector<Cyclic> cyclics = read_patches(folder, mesh);
   check_topology(mesh);
+  MeshFaults faults;
+  find_unused_points(mesh, faults);
+  faults.refuse();
   for (const Cyclic& cyclic : cyclics) {
     const auto partner = std::ranges::find(cyclics, cyclic.other, &Cyclic::patch);
     if (partner == cyclics.end() || partner->other != cyclic.patch) {

@@ -41,10 +41,16 @@ void check_file(const std::filesystem::path& path) {
 
 /// A relative path starts at the folder of the scene; absolute, it means the same in the recorded
 /// scene.
-void resolve_path(std::optional<MeshFileSettings>& file, const std::filesystem::path& scene) {
-  if (!file) return;
-  const std::filesystem::path path = std::filesystem::absolute(scene).parent_path() / file->path;
-  file->path = path.lexically_normal().string();
+void resolve_paths(Scene& scene, const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const auto resolve = [&](std::string& path) {
+    path = (folder / path).lexically_normal().string();
+  };
+  if (scene.fluid.mesh.polymesh) resolve(scene.fluid.mesh.polymesh->path);
+  if (scene.fluid.mesh.gmsh) resolve(scene.fluid.mesh.gmsh->path);
+  for (InsertionSettings& entry : scene.particles.insertion) {
+    if (entry.type == InsertionType::file) resolve(entry.path);
+  }
 }
 
 }  // namespace
@@ -59,8 +65,7 @@ Scene load_scene(const std::filesystem::path& path, const std::vector<std::strin
                       path.string(), std::generic_category().message(errno));
   }
   Scene scene = read_scene(text, path.string(), overrides);
-  resolve_path(scene.fluid.mesh.polymesh, path);
-  resolve_path(scene.fluid.mesh.gmsh, path);
+  resolve_paths(scene, path);
   return scene;
 }
 

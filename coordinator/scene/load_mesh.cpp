@@ -6,6 +6,7 @@
 
 #include "proto/base/errors.hpp"
 #include "proto/mesh/box.hpp"
+#include "proto/mesh/cell_order.hpp"
 #include "proto/mesh/gmsh.hpp"
 #include "proto/mesh/periodic_patches.hpp"
 #include "proto/mesh/polymesh.hpp"
@@ -36,7 +37,9 @@ Mesh read_mesh(const MeshFileSettings& file, bool polymesh) {
     for (const JoinSettings& pair : file.periodic) {
       mesh = join_periodic(std::move(mesh), pair.patches[0], pair.patches[1], tolerance);
     }
-    return with_geometry(std::move(mesh));
+    Mesh sound = with_geometry(std::move(mesh));  // faults have the numbers of the file
+    auto better = with_cells_in_better_order(sound);
+    return better ? with_geometry(std::move(*better)) : sound;
   } catch (const ConfigError& error) {
     const std::string text = error.what();
     if (!text.starts_with("mesh: ")) throw;  // the readers name file and line themselves

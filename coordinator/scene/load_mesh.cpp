@@ -11,6 +11,7 @@
 #include "proto/mesh/periodic_patches.hpp"
 #include "proto/mesh/polymesh.hpp"
 #include "proto/scene/findings.hpp"
+#include "proto/scene/read_value.hpp"
 
 namespace fluxpact {
 namespace {
@@ -55,6 +56,13 @@ void check_conditions(const Scene& scene, const Mesh& mesh) {
   for (const Patch& patch : mesh.patches) {
     patches.push_back(patch.name);
     if (scene.fluid.boundaries.contains(patch.name)) continue;
+    if (!is_name(patch.name)) {
+      add(fmt::format(
+          "fluid.mesh: the patch `{}` of the file cannot be named in a scene; rename it "
+          "there: a letter or _, then letters, digits, _ and -",
+          shown(patch.name)));
+      continue;
+    }
     add(fmt::format("fluid.boundaries.{}: missing; required: the mesh has this patch, {} faces",
                     patch.name, patch.size));
   }

@@ -32,6 +32,7 @@ def closed_box(mesh, patches):
 
 KINDS = {
     "tetrahedra": ({"gmsh": {"path": str(MESHES / "tetrahedra.msh"), "scale": 0.01}}, ("inlet", "outlet", "walls")),
+    "prisms": ({"gmsh": {"path": str(MESHES / "prisms.msh"), "scale": 0.05}}, ("inlet", "outlet", "pipe")),
     "mixed": ({"gmsh": {"path": str(MESHES / "mixed.msh")}}, ("walls",)),
     "polyhedra": ({"polymesh": {"path": str(MESHES / "polyhedra")}}, ("inlet", "outlet", "sides")),
     "cyclic": ({"polymesh": {"path": str(MESHES / "graded_cyclic")}}, ("inlet", "outlet", "sides")),
@@ -113,7 +114,7 @@ class MeshFiles(ProgramTest):
                 self.assertEqual(numpy.abs(record["face_flux"][:]).max(), 0.0)
 
     def test_the_record_holds_the_mesh(self):
-        for kind in ("tetrahedra", "mixed", "polyhedra"):
+        for kind in ("tetrahedra", "prisms", "mixed", "polyhedra"):
             with self.subTest(kind):
                 self.run_scene(closed_box(*KINDS[kind]), out=self.folder / kind)
                 results = self.results(self.folder / kind)
@@ -191,6 +192,11 @@ class MeshChecks(ProgramTest):
             "fluid.boundaries.outlett: no such patch in the mesh; nearest: `outlet`",
         ):
             self.assertIn(words, text)
+
+    def test_a_patch_needs_a_name_of_the_scene(self):
+        (self.folder / "a.msh").write_text((MESHES / "tetrahedra.msh").read_text().replace('"inlet"', '"inlet 1"'))
+        text = self.check(closed_box({"gmsh": {"path": "a.msh"}}, ("outlet", "walls")), EXIT_USAGE)
+        self.assertIn("the patch `inlet 1` of the file cannot be named in a scene", text)
 
     def test_errors_name_file_and_line(self):
         bad = self.folder / "bad.msh"

@@ -1,10 +1,13 @@
 // A box as a face-based mesh: geometry, closure, patches, periodicity, refusals.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "proto/base/errors.hpp"
 #include "proto/mesh/box.hpp"
+#include "proto/mesh/cell_sides.hpp"
 
 namespace fluxpact {
 namespace {
@@ -143,23 +146,38 @@ TEST(Geometry, of_a_moved_vertex_keeps_every_cell_closed_and_the_volume) {
 }
 
 TEST(Geometry, volume_of_a_warped_cell_is_that_of_the_triangles_of_its_faces) {
-  MeshTopology topology = make_box(box({1, 1, 1}, {1, 1, 1}));
-  topology.points[7] += Vector3(0.3, 0.1, -0.2);  // three faces are warped
-  const Mesh mesh = with_geometry(topology);
+  // A pyramid over a hexagon of uneven height: of a quadrangle the corners lie alternately above
+  // and below the plane through their mean, which hides errors.
+  MeshTopology topology;
+  constexpr std::array<double, 6> heights{0.3, 0, 0.1, -0.2, 0.05, 0.15};
+  for (int i = 0; i < 6; ++i) {
+    const double angle = i * std::numbers::pi / 3;
+    topology.points.emplace_back(std::cos(angle), std::sin(angle), heights.at(i));
+  }
+  topology.points.emplace_back(0.2, 0.1, 2);
+  CellSides sides;
+  sides.add(0, std::array{5, 4, 3, 2, 1, 0});
+  for (int i = 0; i < 6; ++i) sides.add(0, std::array{i, (i + 1) % 6, 6});
+  const std::vector<int> patches(7, 0);
+  const std::vector<std::string> names{"walls"};
+  const Mesh mesh = with_geometry(
+      mesh_of_sides(topology.points, sides, match_sides(sides, topology.points), patches, names));
   // Signed tetrahedra over the triangles about the mean of each face, from any point.
   const Vector3 apex(0.2, -0.4, 0.7);
   double volume = 0;
-  for (int face = 0; face < 6; ++face) {
-    const int* ring = mesh.face_points.data() + mesh.face_offsets[face];
+  for (int face = 0; face < mesh.faces(); ++face) {
+    const int first = mesh.face_offsets[face];
+    const int size = mesh.face_offsets[face + 1] - first;
+    const int* ring = mesh.face_points.data() + first;
     Vector3 mean = Vector3::Zero();
-    for (int i = 0; i < 4; ++i) mean += mesh.points[ring[i]] / 4;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < size; ++i) mean += mesh.points[ring[i]] / size;
+    for (int i = 0; i < size; ++i) {
       const Vector3& a = mesh.points[ring[i]];
-      const Vector3& b = mesh.points[ring[(i + 1) % 4]];
+      const Vector3& b = mesh.points[ring[(i + 1) % size]];
       volume += (mean - apex).dot((a - apex).cross(b - apex)) / 6;
     }
   }
-  EXPECT_NEAR(mesh.cell_volumes[0], volume, 1e-15);
+  EXPECT_NEAR(mesh.cell_volumes[0], volume, 1e-14);
 }
 
 TEST(Geometry, refuses_what_is_no_mesh) {
@@ -180,15 +198,27 @@ TEST(Geometry, refuses_what_is_no_mesh) {
   bad = good;
   bad.patches.back().size -= 1;
   EXPECT_THROW(with_geometry(bad), ConfigError);
+}
+
+TEST(Geometry, refuses_faces_that_cannot_be) {
+  const MeshTopology good = make_box(box({1, 1, 1}, {2, 1, 1}));
+  const auto refusal = [](const MeshTopology& mesh) -> std::string {
+    try {
+      with_geometry(mesh);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  MeshTopology bad = good;
+  bad.neighbour[0] = 0;
+  EXPECT_EQ(refusal(bad), "mesh: face 0 joins cell 0 to itself");
   bad = good;
-  bad.neighbour[0] = 0;  // of two cells
-  EXPECT_THROW(with_geometry(bad), ConfigError);
+  bad.face_offsets[1] = 2;
+  EXPECT_EQ(refusal(bad), "mesh: face 0 has 2 points; it needs at least 3");
   bad = good;
-  bad.face_offsets.pop_back();
-  bad.face_offsets.back() = static_cast<int>(bad.face_points.size());
-  bad.owner.pop_back();
-  bad.patches.back().size -= 1;
-  EXPECT_THROW(with_geometry(bad), ConfigError);
+  bad.patches[0].size = 2147483647;
+  EXPECT_NE(refusal(bad).find("patch 'walls' has 2147483647 faces"), std::string::npos);
 }
 
 TEST(Geometry, names_the_first_faults_with_their_place_and_counts_all) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cfd_server/linear/blocked_sum.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -11,15 +12,14 @@ namespace {
 constexpr double tolerance = 1e-10;
 constexpr int most_iterations = 1000;
 
-double dot(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
+double dot(const Stencil& s, const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+  return blocked_sum<double>(s.cells, s.threads, [&](int i) { return a[i].dot(b[i]); });
 }
 
 /// y += factor x
-void add(double factor, const std::vector<Vector3>& x, std::vector<Vector3>& y) {
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
+void add(const Stencil& s, double factor, const std::vector<Vector3>& x, std::vector<Vector3>& y) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int i = 0; i < s.cells; ++i) y[i] += factor * x[i];
 }
 
 }  // namespace
@@ -35,6 +35,7 @@ MomentumSolver::MomentumSolver(const Stencil& stencil, std::vector<SlipFace> sli
 }
 
 void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
+#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
   for (int cell = 0; cell < stencil_.cells; ++cell) {
     Vector3 sum = diagonal[cell] * x[cell];
     for (int side = stencil_.side_offsets[cell]; side < stencil_.side_offsets[cell + 1]; ++side) {
@@ -49,13 +50,14 @@ void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3
 }
 
 void MomentumSolver::precondition(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
-  for (std::size_t i = 0; i < x.size(); ++i) y[i] = x[i] / diagonal[i];
+#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
+  for (int i = 0; i < stencil_.cells; ++i) y[i] = x[i] / diagonal[i];
 }
 
 int MomentumSolver::solve(double scale_squared) {
   std::ranges::fill(change, Vector3::Zero());
   const double target = tolerance * tolerance * scale_squared;
-  double norm = dot(residual, residual);
+  double norm = dot(stencil_, residual, residual);
   double rho = 0;
   int iterations = 0;
   bool restart = true;
@@ -74,33 +76,34 @@ int MomentumSolver::solve(double scale_squared) {
     }
     precondition(direction_, hat_);
     multiply(hat_, product_);
-    const double projection = dot(shadow_, product_);
+    const double projection = dot(stencil_, shadow_, product_);
     if (projection == 0) {
       restart = true;
       ++iterations;
       continue;
     }
     const double alpha = rho / projection;
-    add(alpha, hat_, change);
-    add(-alpha, product_, residual);
+    add(stencil_, alpha, hat_, change);
+    add(stencil_, -alpha, product_, residual);
     precondition(residual, hat_);
     multiply(hat_, second_);
-    const double squared = dot(second_, second_);
-    const double omega = squared > 0 ? dot(second_, residual) / squared : 0.0;
-    add(omega, hat_, change);
-    add(-omega, second_, residual);
-    norm = dot(residual, residual);
+    const double squared = dot(stencil_, second_, second_);
+    const double omega = squared > 0 ? dot(stencil_, second_, residual) / squared : 0.0;
+    add(stencil_, omega, hat_, change);
+    add(stencil_, -omega, second_, residual);
+    norm = dot(stencil_, residual, residual);
     ++iterations;
-    const double rho_next = dot(shadow_, residual);
+    const double rho_next = dot(stencil_, shadow_, residual);
     // The recurrence breaks down when the residual turns orthogonal to the shadow: start it anew
     // from here.
-    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(dot(shadow_, shadow_)) ||
+    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(dot(stencil_, shadow_, shadow_)) ||
         omega == 0) {
       restart = true;
       continue;
     }
     const double beta = rho_next / rho * (alpha / omega);
-    for (std::size_t i = 0; i < direction_.size(); ++i) {
+#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
+    for (int i = 0; i < stencil_.cells; ++i) {
       direction_[i] = residual[i] + beta * (direction_[i] - omega * product_[i]);
     }
     rho = rho_next;

@@ -109,7 +109,7 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
                                     FluidState& to) {
   const Step step{problem, from, window, solids};
   const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
-  open_step(step, time, fields);
+  open_step(step, time, fields, report);
   pre_correct(step, fields, report);
   if (progress) progress();
   predict(step, fields, report);
@@ -183,6 +183,7 @@ void VansSolver::start(std::span<const double> voidage) {
   state.before = {};
   state.means = {};
   self.has_candidate = false;
+  self.fields.pressure_solver->forget();
 }
 
 void VansSolver::advance(const Window& window, const SolidsInput& solids,
@@ -192,6 +193,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   self.has_candidate = false;
   check_window(problem.stencil, window, solids);
   self.report = {};
+  self.fields.pressure_solver->begin_window();
   update_boundary_values(problem.stencil, problem.conditions, solids.voidage, window.end(),
                          self.fields.boundary);
   const double courant =
@@ -222,10 +224,12 @@ void VansSolver::commit() {
   if (!impl_->has_candidate)
     throw NumericsError("fluid: there is no candidate to commit; advance must come first");
   std::swap(impl_->committed, impl_->candidate);
+  impl_->fields.pressure_solver->commit();
   impl_->has_candidate = false;
 }
 
 void VansSolver::rollback() { impl_->has_candidate = false; }
+void VansSolver::forget_setup() { impl_->fields.pressure_solver->forget(); }
 
 std::span<const double> window_flux(const FluidState& state) {
   return state.means.face_flux.empty() ? state.face_flux : state.means.face_flux;

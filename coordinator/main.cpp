@@ -6,10 +6,11 @@
 
 #include "coordinator/audit/audit_row.hpp"
 #include "coordinator/run/run.hpp"
+#include "coordinator/scene/load_mesh.hpp"
 #include "coordinator/scene/load_scene.hpp"
+#include "coordinator/scene/mesh_report.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
-#include "proto/mesh/box.hpp"
 #include "proto/scene/read_scene.hpp"
 
 namespace {
@@ -18,10 +19,11 @@ using namespace fluxpact;
 
 void check_scene(const RunOptions& options) {
   const Scene scene = load_scene(options.scene, options.overrides);
-  const Mesh mesh = make_box(scene.fluid.mesh);
+  const Mesh mesh = load_mesh(scene);
   fmt::print("{}: fine; {} cells, {} windows of {} s, {} sub-steps in each\n",
              options.scene.string(), mesh.cells(), windows(scene), scene.coupling.window,
              sub_steps(scene));
+  fmt::print("{}", mesh_report(scene, mesh));
 }
 
 int dispatch(int argc, char** argv) {

@@ -49,7 +49,12 @@ std::string grid(const char* name, double time, const std::string& content) {
 // The faces of each cell as lists of points, in the frame of the cell.
 class PolyhedronWriter {
  public:
-  PolyhedronWriter(const Mesh& mesh, XdmfPolyhedra& drawing) : mesh_(mesh), drawing_(drawing) {}
+  PolyhedronWriter(const Mesh& mesh, XdmfPolyhedra& drawing) : mesh_(mesh), drawing_(drawing) {
+    pair_of_face_.assign(mesh.neighbour.size(), -1);
+    for (std::size_t i = 0; i < mesh.periodic_faces.size(); ++i) {
+      pair_of_face_[static_cast<std::size_t>(mesh.periodic_faces[i])] = static_cast<int>(i);
+    }
+  }
 
   void write_cell(int cell) {
     const auto c = static_cast<std::size_t>(cell);
@@ -67,14 +72,13 @@ class PolyhedronWriter {
     const auto first = mesh_.face_points.begin() + mesh_.face_offsets[f];
     const auto last = mesh_.face_points.begin() + mesh_.face_offsets[f + 1];
     drawing_.connectivity.push_back(static_cast<std::int32_t>(last - first));
-    const auto periodic = std::ranges::find(mesh_.periodic_faces, face);
-    if (periodic == mesh_.periodic_faces.end() || mesh_.owner[f] == cell) {
+    const int periodic = f < pair_of_face_.size() ? pair_of_face_[f] : -1;
+    if (periodic < 0 || mesh_.owner[f] == cell) {
       drawing_.connectivity.insert(drawing_.connectivity.end(), first, last);
       return;
     }
     // The face's points stand at the owner; at the neighbour, a translation back, there are none.
-    const auto& translation =
-        mesh_.translations[static_cast<std::size_t>(periodic - mesh_.periodic_faces.begin())];
+    const auto& translation = mesh_.translations[static_cast<std::size_t>(periodic)];
     for (auto point = first; point != last; ++point) {
       drawing_.connectivity.push_back(static_cast<std::int32_t>(drawing_.points.size()));
       drawing_.points.emplace_back(mesh_.points[static_cast<std::size_t>(*point)] - translation);
@@ -83,6 +87,7 @@ class PolyhedronWriter {
 
   const Mesh& mesh_;
   XdmfPolyhedra& drawing_;
+  std::vector<int> pair_of_face_;  ///< index into periodic_faces, -1 for other internal faces
 };
 
 }  // namespace

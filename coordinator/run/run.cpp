@@ -10,11 +10,12 @@
 #include "coordinator/record/recorder.hpp"
 #include "coordinator/run/progress.hpp"
 #include "coordinator/run/summary.hpp"
+#include "coordinator/scene/load_mesh.hpp"
 #include "coordinator/scene/load_scene.hpp"
+#include "coordinator/scene/mesh_report.hpp"
 #include "coordinator/session/interrupt.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
-#include "proto/mesh/box.hpp"
 #include "proto/participant/field_names.hpp"
 #include "proto/scene/read_scene.hpp"
 
@@ -65,6 +66,7 @@ class Run {
   Run& operator=(const Run&) = delete;
 
   ExitCode run() {
+    spdlog::info("{}", mesh_line(scene_, coupling_.mesh));
     session_.greet(write_scene(scene_), coupling_.mesh);
     state_ = start_coupling(coupling_);
     summary_.start(coupling_.mesh, scene_, state_);
@@ -178,7 +180,7 @@ class Run {
 
 ExitCode run_scene(const RunOptions& options) {
   const Scene scene = resolve_scene(options);
-  const Mesh mesh = make_box(scene.fluid.mesh);
+  const Mesh mesh = load_mesh(scene);
   watch_for_interrupts();
   Run run(scene, mesh, options);
   const ExitCode code = run.run();

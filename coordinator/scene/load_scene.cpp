@@ -39,6 +39,20 @@ void check_file(const std::filesystem::path& path) {
   }
 }
 
+/// A relative path starts at the folder of the scene; absolute, it means the same in the recorded
+/// scene.
+void resolve_paths(Scene& scene, const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const auto resolve = [&](std::string& path) {
+    path = (folder / path).lexically_normal().string();
+  };
+  if (scene.fluid.mesh.polymesh) resolve(scene.fluid.mesh.polymesh->path);
+  if (scene.fluid.mesh.gmsh) resolve(scene.fluid.mesh.gmsh->path);
+  for (InsertionSettings& entry : scene.particles.insertion) {
+    if (entry.type == InsertionType::file) resolve(entry.path);
+  }
+}
+
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
@@ -50,7 +64,9 @@ Scene load_scene(const std::filesystem::path& path, const std::vector<std::strin
     throw SystemError("{}: the scene cannot be read: {}; check the rights of the file",
                       path.string(), std::generic_category().message(errno));
   }
-  return read_scene(text, path.string(), overrides);
+  Scene scene = read_scene(text, path.string(), overrides);
+  resolve_paths(scene, path);
+  return scene;
 }
 
 }  // namespace fluxpact

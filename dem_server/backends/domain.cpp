@@ -48,11 +48,13 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
   for (const Patch& patch : mesh.patches) {
     for (int face = patch.first; face < patch.first + patch.size; ++face) {
       const int side = side_of(domain, mesh, face);
+      if (side < 0 && scene.particles.insertion.empty()) continue;  // nobody meets the walls
       if (side < 0) {
         const Vector3& at = mesh.face_centres[face];
         throw ConfigError(
             "particles.walls: patch {} has a face at ({:.6g}, {:.6g}, {:.6g}) m off the outer box "
-            "of the mesh; the particle walls are the sides of a box, so use a box mesh",
+            "of the mesh; the particle walls are the sides of a box, so use a box mesh, or a fluid "
+            "without particles (interphase.voidage: prescribed)",
             patch.name, at.x(), at.y(), at.z());
       }
       only_pressure[side] = only_pressure[side] && is_pressure(scene, patch.name);

@@ -34,7 +34,8 @@ const char* side_name(int side);
 /// The domain of the particles of a scene. Every side that is not periodic is a wall, so that no
 /// particle leaves through an inlet, except a side all of whose faces have a `pressure` boundary:
 /// that one is open. With `particles.walls: none` all of them are open. Throws ConfigError if a
-/// boundary face of the mesh lies off its outer box (only boxes are known here).
+/// boundary face of the mesh lies off its outer box (only boxes are known here) and the scene has
+/// particles.
 Domain particle_domain(const Scene& scene, const Mesh& mesh);
 
 /// Position moved by whole periods into [lower, upper) along the periodic axes [m].

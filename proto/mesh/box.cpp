@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proto/base/errors.hpp"
+#include "proto/mesh/grading.hpp"
 
 namespace fluxpact {
 namespace {
@@ -46,8 +47,10 @@ Grid make_grid(const BoxSettings& box) {
           "upper above lower",
           "xyz"[axis], n, box.lower[axis], box.upper[axis]);
     }
-    for (int i = 0; i <= n; ++i) {
-      const double share = static_cast<double>(i) / n;
+    const std::array<const std::vector<GradingSettings>*, 3> parts{&box.grading.x, &box.grading.y,
+                                                                   &box.grading.z};
+    for (const double share :
+         node_shares(n, *parts[axis], fmt::format("fluid.mesh.box.grading.{}", "xyz"[axis]))) {
       grid.nodes[axis].push_back(box.lower[axis] * (1 - share) + box.upper[axis] * share);
     }
   }

@@ -1,6 +1,7 @@
 #include "proto/mesh/cell_sides.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "proto/base/errors.hpp"
 
@@ -17,6 +18,7 @@ Vector3 middle_of(std::span<const int> ring, std::span<const Vector3> points) {
 struct Groups {
   std::vector<int> offsets;
   std::vector<int> sides;
+  std::vector<long long> sums;  ///< of the point numbers of each side: unequal ones need no look
 };
 
 Groups group_by_lowest_point(const CellSides& sides, std::size_t points) {
@@ -24,7 +26,9 @@ Groups group_by_lowest_point(const CellSides& sides, std::size_t points) {
   groups.offsets.assign(points + 1, 0);
   std::vector<int> lowest(static_cast<std::size_t>(sides.size()));
   for (int side = 0; side < sides.size(); ++side) {
-    lowest[side] = std::ranges::min(sides.ring(side));
+    const auto ring = sides.ring(side);
+    lowest[side] = std::ranges::min(ring);
+    groups.sums.push_back(std::accumulate(ring.begin(), ring.end(), 0LL));
     ++groups.offsets[lowest[side] + 1];
   }
   for (std::size_t p = 0; p < points; ++p) groups.offsets[p + 1] += groups.offsets[p];
@@ -49,12 +53,13 @@ bool runs_against(std::span<const int> a, std::span<const int> b) {
 }
 
 /// The one side of a group that has the points of `side`, or -1.
-int partner_of(const CellSides& sides, std::span<const int> group, int side,
-               std::span<const Vector3> points) {
+int partner_of(const CellSides& sides, std::span<const long long> sums, std::span<const int> group,
+               int side, std::span<const Vector3> points) {
   int partner = -1;
   const auto ring = sides.ring(side);
   for (const int other : group) {
-    if (other == side || !same_points(ring, sides.ring(other))) continue;
+    if (other == side || sums[other] != sums[side]) continue;
+    if (!same_points(ring, sides.ring(other))) continue;
     const Vector3 at = middle_of(ring, points);
     if (partner >= 0) {
       throw ConfigError(
@@ -108,7 +113,7 @@ MatchedSides match_sides(const CellSides& sides, std::span<const Vector3> points
     const auto group = std::span(groups.sides)
                            .subspan(first, static_cast<std::size_t>(groups.offsets[p + 1]) - first);
     for (const int side : group) {
-      const int partner = partner_of(sides, group, side, points);
+      const int partner = partner_of(sides, groups.sums, group, side, points);
       if (partner < 0) matched.single.push_back(side);
       if (partner >= 0 && sides.cell[side] < sides.cell[partner]) {
         matched.pairs.push_back({side, partner});

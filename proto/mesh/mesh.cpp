@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "proto/base/errors.hpp"
+#include "proto/mesh/mesh_check.hpp"
 
 namespace fluxpact {
 namespace {
@@ -17,8 +17,10 @@ std::span<const int> points_of_face(const MeshTopology& mesh, int face) {
   return std::span(mesh.face_points).subspan(first, last - first);
 }
 
-/// Area vectors and centroids: triangles about the mean of the face's points.
-void add_face_geometry(Mesh& mesh) {
+/// Area vectors and centroids: triangles about the mean of the face's points. The centroid is taken
+/// in the plane through that mean across the area vector: so the pyramids from any apex over the
+/// centroids have exactly the volume of those over the triangles, also where the face is warped.
+void add_face_geometry(Mesh& mesh, MeshFaults& faults) {
   mesh.face_areas.reserve(mesh.owner.size());
   mesh.face_centres.reserve(mesh.owner.size());
   for (int face = 0; face < mesh.faces(); ++face) {
@@ -33,16 +35,14 @@ void add_face_geometry(Mesh& mesh) {
       area += 0.5 * (a - mean).cross(b - mean);
     }
     const double size = area.norm();
-    if (!(size > 0)) {
-      throw ConfigError("mesh: face {} at ({}, {}, {}) has no area", face, mean.x(), mean.y(),
-                        mean.z());
-    }
+    if (!(size > 0)) faults.add(MeshFault::face_without_area, face, mean, size);
     Vector3 moment = Vector3::Zero();
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vector3& a = mesh.points[ring[i]];
       const Vector3& b = mesh.points[ring[(i + 1) % ring.size()]];
       moment += 0.5 * (a - mean).cross(b - mean).dot(area) / size * ((a + b + mean) / 3.0 - mean);
     }
+    moment -= moment.dot(area) / area.squaredNorm() * area;
     mesh.face_areas.push_back(area);
     mesh.face_centres.push_back(mean + moment / size);
   }
@@ -74,7 +74,8 @@ void add_cell_faces(Mesh& mesh, int cells) {
 }
 
 /// Volumes and centroids: pyramids from the mean of the face centres to the faces' triangles.
-void add_cell_geometry(Mesh& mesh, int cells, const std::vector<Vector3>& shifts) {
+void add_cell_geometry(Mesh& mesh, int cells, const std::vector<Vector3>& shifts,
+                       MeshFaults& faults) {
   mesh.cell_volumes.assign(static_cast<std::size_t>(cells), 0.0);
   mesh.cell_centres.assign(static_cast<std::size_t>(cells), Vector3::Zero());
   for (int cell = 0; cell < cells; ++cell) {
@@ -109,85 +110,14 @@ void add_cell_geometry(Mesh& mesh, int cells, const std::vector<Vector3>& shifts
       closure += sign * mesh.face_areas[face];
       surface += mesh.face_areas[face].norm();
     }
-    if (closure.norm() > 1e-9 * surface) {
-      throw ConfigError(
-          "mesh: cell {} at ({}, {}, {}) is open: its face areas add up to {} of its surface", cell,
-          mean.x(), mean.y(), mean.z(), closure.norm() / surface);
-    }
-    if (!(volume > 0)) {
-      throw ConfigError(
-          "mesh: cell {} at ({}, {}, {}) has the volume {} m³; check the order of its points", cell,
-          mean.x(), mean.y(), mean.z(), volume);
+    if (!(closure.norm() <= 1e-9 * surface)) {
+      faults.add(MeshFault::open_cell, cell, mean, closure.norm() / surface);
+    } else if (!(volume > 0)) {
+      faults.add(MeshFault::cell_without_volume, cell, mean, volume);
     }
     mesh.cell_volumes[cell] = volume;
     mesh.cell_centres[cell] = mean + moment / volume;
   }
-}
-
-void check_topology(const MeshTopology& mesh) {
-  const std::size_t faces = mesh.owner.size();
-  if (mesh.face_offsets.size() != faces + 1 || mesh.face_offsets.front() != 0 ||
-      mesh.face_offsets.back() != static_cast<int>(mesh.face_points.size()) ||
-      mesh.neighbour.size() > faces || mesh.periodic_faces.size() != mesh.translations.size()) {
-    throw ConfigError(
-        "mesh: the lengths of face offsets ({}), face points ({}), owners ({}) and neighbours ({}) "
-        "do not fit",
-        mesh.face_offsets.size(), mesh.face_points.size(), faces, mesh.neighbour.size());
-  }
-  if (!std::ranges::is_sorted(mesh.face_offsets))
-    throw ConfigError("mesh: face offsets must ascend");
-  const int points = static_cast<int>(mesh.points.size());
-  for (const int point : mesh.face_points) {
-    if (point < 0 || point >= points)
-      throw ConfigError("mesh: a face names point {} of {}", point, points);
-  }
-  for (const int face : mesh.periodic_faces) {
-    if (face < 0 || face >= static_cast<int>(mesh.neighbour.size())) {
-      throw ConfigError("mesh: periodic face {} is not an internal face", face);
-    }
-  }
-  int next = static_cast<int>(mesh.neighbour.size());
-  for (const Patch& patch : mesh.patches) {
-    if (patch.first != next || patch.size < 0) {
-      throw ConfigError("mesh: patch '{}' starts at face {}, expected {}", patch.name, patch.first,
-                        next);
-    }
-    next += patch.size;
-  }
-  if (next != static_cast<int>(faces)) {
-    throw ConfigError("mesh: the patches end at face {}, the mesh has {}", next, faces);
-  }
-}
-
-/// Cells that the faces name; every number from 0 up must occur, every point be used.
-int count_cells(const MeshTopology& mesh) {
-  if (mesh.owner.empty()) throw ConfigError("mesh: no faces");
-  int highest = 0;
-  for (const auto* side : {&mesh.owner, &mesh.neighbour}) {
-    for (const int cell : *side) {
-      if (cell < 0) throw ConfigError("mesh: a face names cell {}", cell);
-      highest = std::max(highest, cell);
-    }
-  }
-  if (highest >= static_cast<int>(2 * mesh.owner.size())) {
-    throw ConfigError("mesh: a face names cell {}, more than {} faces can bound", highest,
-                      mesh.owner.size());
-  }
-  std::vector<char> seen(static_cast<std::size_t>(highest) + 1, 0);
-  for (const auto* side : {&mesh.owner, &mesh.neighbour}) {
-    for (const int cell : *side) seen[cell] = 1;
-  }
-  const auto missing = std::ranges::find(seen, 0);
-  if (missing != seen.end()) throw ConfigError("mesh: cell {} has no face", missing - seen.begin());
-  if (mesh.periodic_faces
-          .empty()) {  // else points of the far side belong to faces that are not stored
-    std::vector<char> used(mesh.points.size(), 0);
-    for (const int point : mesh.face_points) used[point] = 1;
-    const auto unused = std::ranges::find(used, 0);
-    if (unused != used.end())
-      throw ConfigError("mesh: point {} is on no face", unused - used.begin());
-  }
-  return highest + 1;
 }
 
 /// Sorted distinct values, those closer than `tolerance` taken as one.
@@ -210,12 +140,16 @@ const Patch* Mesh::find_patch(const std::string& name) const {
 Mesh with_geometry(MeshTopology topology) {
   check_topology(topology);
   const int cells = count_cells(topology);
+  MeshFaults faults;
+  find_unused_points(topology, faults);
   Mesh mesh;
   static_cast<MeshTopology&>(mesh) = std::move(topology);
-  add_face_geometry(mesh);
+  add_face_geometry(mesh, faults);
+  faults.refuse();  // centres of such faces are no numbers
   add_cell_faces(mesh, cells);
   const auto shifts = neighbour_shifts(mesh);
-  add_cell_geometry(mesh, cells, shifts);
+  add_cell_geometry(mesh, cells, shifts, faults);
+  faults.refuse();
   mesh.delta.reserve(mesh.neighbour.size());
   for (int face = 0; face < mesh.internal_faces(); ++face) {
     mesh.delta.push_back(mesh.cell_centres[mesh.neighbour[face]] + shifts[face] -

@@ -69,7 +69,8 @@ void check_times(const Scene& scene, Findings& findings) {
 }
 
 void check_box(const Scene& scene, Findings& findings) {
-  if (!is_sound(findings, {"fluid.mesh.box.lower", "fluid.mesh.box.upper"})) {
+  if (!scene.fluid.mesh.is_box() ||
+      !is_sound(findings, {"fluid.mesh.box.lower", "fluid.mesh.box.upper"})) {
     return;
   }
   const BoxSettings& box = scene.fluid.mesh.box;
@@ -144,6 +145,12 @@ void check_boundaries(const Scene& scene, Findings& findings) {
     return;
   }
   const FluidSettings& fluid = scene.fluid;
+  if (!fluid.mesh.is_box()) {  // the file names the patches: the rest follows when it is read
+    for (const auto& [name, boundary] : fluid.boundaries) {
+      check_velocity("fluid.boundaries." + name, boundary, findings);
+    }
+    return;
+  }
   const Left left = faces_left(fluid.mesh);
   std::vector<std::string> patches = names_in(fluid.mesh.patches);
   for (const std::string& name : patches) {

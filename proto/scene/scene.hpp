@@ -88,10 +88,23 @@ struct Region {
   std::optional<std::array<double, 2>> x, y, z;  ///< [m]
 };
 
+/// A part of an axis whose cells grow or shrink by a constant factor from one to the next.
+struct GradingSettings {
+  double length = 1;  ///< share of the axis, in relation to its other parts [-]
+  double cells = 1;   ///< share of the cells likewise [-]
+  double ratio = 1;   ///< width of the last cell over that of the first [-]
+};
+
+/// The parts of each axis from its lower end; none: equal cells.
+struct BoxGrading {
+  std::vector<GradingSettings> x, y, z;
+};
+
 struct BoxSettings {
-  Vector3 lower{0, 0, 0};  ///< [m]
-  Vector3 upper{0, 0, 0};  ///< [m]
-  std::array<int, 3> cells{0, 0, 0};
+  Vector3 lower{0, 0, 0};             ///< [m]
+  Vector3 upper{0, 0, 0};             ///< [m]
+  std::array<int, 3> cells{0, 0, 0};  ///< all 0: the mesh is not a box but comes from a file
+  BoxGrading grading{};
 };
 
 struct PatchSettings {
@@ -101,11 +114,28 @@ struct PatchSettings {
 
 enum class Axis { x, y, z };
 
+/// Two patches of a file that are one periodic pair.
+struct JoinSettings {
+  std::array<std::string, 2> patches;
+};
+
+/// A mesh from a file or folder. The coordinator reads it once and sends the mesh to the others.
+struct MeshFileSettings {
+  std::string path;  ///< absolute once load_scene has seen it
+  double scale = 1;  ///< [m] for one unit of the file
+  std::vector<JoinSettings> periodic;
+};
+
+/// Exactly one of `box`, `polymesh` and `gmsh`; `periodic` and `patches` belong to `box`.
 struct MeshSettings {
   BoxSettings box;
+  std::optional<MeshFileSettings> polymesh;
+  std::optional<MeshFileSettings> gmsh;
   std::vector<Axis> periodic;
   std::vector<std::pair<std::string, PatchSettings>>
       patches;  ///< in the order of the file: the first that holds a face gets it
+
+  bool is_box() const { return !polymesh && !gmsh; }
 };
 
 enum class BoundaryType { velocity, mass_flow, pressure, wall };

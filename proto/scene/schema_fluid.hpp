@@ -21,6 +21,33 @@ void describe(Visit& visit, Region& region) {
 }
 
 template <class Visit>
+void describe(Visit& visit, GradingSettings& part) {
+  visit({.name = "length",
+         .range = positive,
+         .meaning = "Share of the axis; shares are relative to their sum."},
+        part.length);
+  visit({.name = "cells",
+         .range = positive,
+         .meaning = "Share of the axis' cells, rounded to whole cells."},
+        part.cells);
+  visit({.name = "ratio",
+         .range = positive,
+         .meaning = "Width of the last cell of the part over that of its first; each cell is a "
+                    "constant factor wider than the one before."},
+        part.ratio);
+}
+
+template <class Visit>
+void describe(Visit& visit, BoxGrading& grading) {
+  visit({.name = "x",
+         .meaning = "Parts of the x axis from its lower end; fine at both ends: "
+                    "`[{ratio: 10}, {ratio: 0.1}]`."},
+        grading.x);
+  visit({.name = "y", .meaning = "Parts of the y axis."}, grading.y);
+  visit({.name = "z", .meaning = "Parts of the z axis."}, grading.z);
+}
+
+template <class Visit>
 void describe(Visit& visit, BoxSettings& box) {
   visit({.name = "lower", .dimension = Dimension::length, .meaning = "Corner of the box."},
         box.lower);
@@ -34,6 +61,31 @@ void describe(Visit& visit, BoxSettings& box) {
          .required = true,
          .meaning = "Number of cells in x, y and z."},
         box.cells);
+  visit({.name = "grading",
+         .otherwise = "equal cells",
+         .meaning = "Widths of the cells along each axis, as blockMesh grades its edges."},
+        box.grading);
+}
+
+template <class Visit>
+void describe(Visit& visit, JoinSettings& pair) {
+  visit({.name = "patches",
+         .required = true,
+         .meaning = "Two patches of the file that differ by a translation only."},
+        pair.patches);
+}
+
+template <class Visit>
+void describe(Visit& visit, MeshFileSettings& file) {
+  visit({.name = "path",
+         .required = true,
+         .meaning = "Where the mesh is; relative to the folder of the scene."},
+        file.path);
+  visit({.name = "scale",
+         .range = positive,
+         .meaning = "Metres in one unit of the file; 1e-3 for a file in millimetres."},
+        file.scale);
+  visit({.name = "periodic", .meaning = "Pairs of patches that are joined."}, file.periodic);
 }
 
 template <class Visit>
@@ -47,9 +99,34 @@ void describe(Visit& visit, PatchSettings& patch) {
 
 template <class Visit>
 void describe(Visit& visit, MeshSettings& mesh) {
-  visit({.name = "box", .required = true, .meaning = "A box of equal hexahedra."}, mesh.box);
-  visit({.name = "periodic", .meaning = "Axes whose two sides are joined."}, mesh.periodic);
+  constexpr std::string_view from_box = "box";
+  visit({.name = "polymesh",
+         .otherwise = "exactly one of `polymesh`, `gmsh` and `box`",
+         .meaning = "A folder `polyMesh` of OpenFOAM in ascii: points, faces, owner, neighbour, "
+                    "boundary. `cyclic` patches are joined; all others need a condition."},
+        mesh.polymesh);
+  visit({.name = "gmsh",
+         .otherwise = "exactly one of `polymesh`, `gmsh` and `box`",
+         .applies = !mesh.polymesh,
+         .only_with = "neither polymesh nor box",
+         .meaning = "A file of Gmsh in the format 4.1 ascii, first order. Physical surfaces are "
+                    "the patches; faces without one are the patch `walls`."},
+        mesh.gmsh);
+  visit({.name = "box",
+         .required = true,
+         .otherwise = "exactly one of `polymesh`, `gmsh` and `box`",
+         .applies = mesh.is_box(),
+         .only_with = "neither polymesh nor gmsh",
+         .meaning = "A box of hexahedra."},
+        mesh.box);
+  visit({.name = "periodic",
+         .applies = mesh.is_box(),
+         .only_with = from_box,
+         .meaning = "Axes whose two sides are joined."},
+        mesh.periodic);
   visit({.name = "patches",
+         .applies = mesh.is_box(),
+         .only_with = from_box,
          .meaning = "Named parts of the boundary. A face belongs to the first patch that holds its "
                     "centre; what is left is "
                     "the patch `walls`."},

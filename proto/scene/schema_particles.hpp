@@ -112,7 +112,9 @@ void describe(Visit& visit, InsertionSettings& entry) {
          .required = true,
          .applies = file,
          .only_with = "type: file",
-         .meaning = "CSV with a header line x,y,z[,vx,vy,vz][,diameter], in SI units."},
+         .meaning =
+             "CSV with a header line x,y,z[,vx,vy,vz][,diameter], in SI units; relative to the "
+             "folder of the scene."},
         entry.path);
 }
 

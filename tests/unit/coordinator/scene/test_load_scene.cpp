@@ -52,6 +52,26 @@ TEST_F(LoadScene, names_the_file_in_every_error_of_the_scene) {
             std::string::npos);
 }
 
+TEST_F(LoadScene, paths_start_at_the_folder_of_the_scene_and_become_absolute) {
+  const std::string text =
+      "version: 1\n"
+      "scene: {name: paths, end_time: 1}\n"
+      "coupling: {window: 1}\n"
+      "fluid: {density: 1, viscosity: 1, mesh: {gmsh: {path: PATH}}}\n"
+      "particles:\n"
+      "  backend: kinematic\n"
+      "  materials: {glass: {density: 1}}\n"
+      "  insertion: [{type: file, material: glass, diameter: 1, path: bed.csv}]\n";
+  const auto load = [&](const std::string& path) {
+    std::string with_path = text;
+    return load_scene(write(with_path.replace(text.find("PATH"), 4, path)));
+  };
+  const Scene scene = load("meshes/../pipe.msh");
+  EXPECT_EQ(scene.fluid.mesh.gmsh->path, (folder_ / "pipe.msh").string());
+  EXPECT_EQ(scene.particles.insertion[0].path, (folder_ / "bed.csv").string());
+  EXPECT_EQ(load("/elsewhere/pipe.msh").fluid.mesh.gmsh->path, "/elsewhere/pipe.msh");
+}
+
 TEST_F(LoadScene, says_what_is_wrong_with_the_path) {
   EXPECT_NE(message_of<ConfigError>(folder_ / "none.yaml").find("none.yaml: no such file"),
             std::string::npos);

@@ -44,6 +44,31 @@ TEST(SceneChecks, box_has_a_volume) {
                "s.yaml:16:29: fluid.mesh.box.upper: 0 in y", {});
 }
 
+TEST(SceneChecks, a_mesh_comes_from_one_place) {
+  const std::string box = "box: {lower: [0, 0, 0], upper: [0.1, 0.1, 0.2], cells: [4, 4, 8]}";
+  expect_error(with(box, box + "\n    gmsh: {path: a.msh}"),
+               "s.yaml:16:5: fluid.mesh.box: has no meaning here", {"neither polymesh nor gmsh"});
+  expect_error(replaced(prescribed_scene,
+                        "    box: {upper: [1, 1, 1], cells: [4, 1, 1]}\n    periodic: [x, y, z]\n",
+                        "    gmsh: {path: a.msh}\n    polymesh: {path: a}\n"),
+               "s.yaml:8:5: fluid.mesh.gmsh: has no meaning here", {});
+  expect_error(replaced(prescribed_scene, "    box: {upper: [1, 1, 1], cells: [4, 1, 1]}\n", ""),
+               "s.yaml:7:3: fluid.mesh.box: missing", {});
+  expect_error(replaced(prescribed_scene, "box: {upper: [1, 1, 1], cells: [4, 1, 1]}",
+                        "gmsh: {path: a.msh, scale: 1 mm}"),
+               "s.yaml:8:32: fluid.mesh.gmsh.scale", {});
+}
+
+TEST(SceneChecks, patches_of_a_file_are_not_known_yet) {
+  const std::string text = replaced(
+      prescribed_scene, "    box: {upper: [1, 1, 1], cells: [4, 1, 1]}\n    periodic: [x, y, z]\n",
+      "    polymesh: {path: a}\n  boundaries: {any: {type: wall}}\n");
+  EXPECT_EQ(errors_in(text), "");
+  EXPECT_EQ(errors_in(replaced(text, "type: wall", "type: velocity"))
+                .find("s.yaml:9:16: fluid.boundaries.any: none of `superficial`"),
+            0U);
+}
+
 TEST(SceneChecks, patches_have_faces_of_their_own) {
   expect_error(with("inlet: {side: z_min}", "inlet: {side: y_min}"),
                "s.yaml:20:7: fluid.mesh.patches.inlet: y_min is periodic", {});

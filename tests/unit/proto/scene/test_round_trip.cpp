@@ -129,6 +129,32 @@ TEST(ReadScene, says_why_a_formula_or_a_table_is_none) {
                {});
 }
 
+TEST(WriteScene, keeps_graded_boxes_and_meshes_of_files) {
+  const std::string box = "box: {lower: [0, 0, 0], upper: [0.1, 0.1, 0.2], cells: [4, 4, 8]";
+  Scene scene = read_scene(
+      with(box, box + ", grading: {x: [{length: 0.2, cells: 0.5, ratio: 4}, {}]}"), "s.yaml");
+  Scene again = read_scene(write_scene(scene), "written");
+  ASSERT_EQ(again.fluid.mesh.box.grading.x.size(), 2U);
+  EXPECT_EQ(again.fluid.mesh.box.grading.x[0].length, 0.2);
+  EXPECT_EQ(again.fluid.mesh.box.grading.x[0].cells, 0.5);
+  EXPECT_EQ(again.fluid.mesh.box.grading.x[0].ratio, 4);
+  EXPECT_EQ(again.fluid.mesh.box.grading.x[1].ratio, 1);
+  EXPECT_TRUE(again.fluid.mesh.box.grading.y.empty());
+
+  scene = Scene();
+  scene.scene.name = "file";
+  scene.scene.end_time = scene.coupling.window = 1;
+  scene.fluid.density = scene.fluid.viscosity = 1;
+  scene.fluid.mesh.gmsh = MeshFileSettings{"/a b/c.msh", 1e-3, {{{"left", "right"}}}};
+  again = read_scene(write_scene(scene), "written");
+  EXPECT_FALSE(again.fluid.mesh.is_box());
+  EXPECT_FALSE(again.fluid.mesh.polymesh.has_value());
+  EXPECT_EQ(again.fluid.mesh.gmsh->path, "/a b/c.msh");
+  EXPECT_EQ(again.fluid.mesh.gmsh->scale, 1e-3);
+  ASSERT_EQ(again.fluid.mesh.gmsh->periodic.size(), 1U);
+  EXPECT_EQ(again.fluid.mesh.gmsh->periodic[0].patches[1], "right");
+}
+
 TEST(WriteScene, keeps_a_given_zero_apart_from_nothing_given) {
   const Scene scene = read_scene(with("interstitial: [0, 0, 5]", "interstitial: [0, 0, 0]"),
                                  "s.yaml", {"particles.contact.pairs[1].tangential_stiffness=0"});

@@ -1,15 +1,13 @@
 // The linear system of the momentum predictor: three velocity components, coupled only at free-slip
 // walls.
 //
-// Diagonally dominant, not symmetric. BiCGSTAB with the diagonal as preconditioner (van der Vorst,
-// SIAM J. Sci. Stat. Comput. 13, 1992, 631-644): in a gas-solid window (small Courant number,
-// strong drag) it needs a handful of iterations, and unlike relaxation sweeps it does not stall
-// when viscosity or a large Courant number couples the whole mesh.
+// Diagonally dominant, not symmetric: solved by BiCGSTAB.
 #pragma once
 
 #include <vector>
 
 #include "cfd_server/discretisation/stencil.hpp"
+#include "cfd_server/linear/bicgstab.hpp"
 
 namespace fluxpact {
 
@@ -41,10 +39,9 @@ class MomentumSolver {
 
  private:
   void multiply(const std::vector<Vector3>& x, std::vector<Vector3>& y) const;
-  void precondition(const std::vector<Vector3>& x, std::vector<Vector3>& y) const;
 
   const Stencil& stencil_;
-  std::vector<Vector3> shadow_, direction_, hat_, product_, second_;
+  BicgstabWork<Vector3> work_;
 };
 
 }  // namespace fluxpact

@@ -16,8 +16,8 @@ void assemble(const Stencil& s, const FluidStep& step, const ScalarInput& in, Sc
   const double rate = step.density / step.length;
   for (int cell = 0; cell < s.cells; ++cell) {
     const double old_capacity = rate * s.volume[cell] * step.old_voidage[cell];
-    w.capacity[cell] = rate * s.volume[cell] * step.voidage[cell];
-    w.diagonal[cell] = step.closed ? old_capacity : w.capacity[cell];
+    const double capacity = rate * s.volume[cell] * step.voidage[cell];
+    w.diagonal[cell] = step.closed ? old_capacity : capacity;
     if (!in.sink.empty()) w.diagonal[cell] += in.sink[cell];
   }
   for (int f = 0; f < s.faces; ++f) {
@@ -49,7 +49,10 @@ void evaluate_residual(const Stencil& s, const FluidStep& step, const ScalarInpu
   for (int cell = 0; cell < s.cells; ++cell) {
     const double old_capacity = rate * s.volume[cell] * step.old_voidage[cell];
     residual[cell] = old_capacity * (old[cell] - value[cell]);
-    if (!step.closed) residual[cell] -= (w.capacity[cell] - old_capacity) * value[cell];
+    if (!step.closed) {
+      const double capacity = rate * s.volume[cell] * step.voidage[cell];
+      residual[cell] -= (capacity - old_capacity) * value[cell];
+    }
     if (!in.source.empty()) residual[cell] += in.source[cell];
     if (!in.sink.empty()) residual[cell] -= in.sink[cell] * value[cell];
   }
@@ -57,8 +60,8 @@ void evaluate_residual(const Stencil& s, const FluidStep& step, const ScalarInpu
     const int p = s.owner[f];
     const int n = s.neighbour[f];
     const double difference = value[n] - value[p];
-    residual[p] += w.into_owner[f] * difference;
-    residual[n] -= w.into_neighbour[f] * difference;
+    residual[p] += w.into_owner[f] * difference - w.flux[f];
+    residual[n] -= w.into_neighbour[f] * difference - w.flux[f];
     if (step.closed) continue;
     residual[p] -= step.face_flux[f] * value[p];
     residual[n] += step.face_flux[f] * value[n];
@@ -69,7 +72,7 @@ void evaluate_residual(const Stencil& s, const FluidStep& step, const ScalarInpu
     if (in.boundary.kind[b] == ScalarFace::influx) {
       residual[p] += in.boundary.value[b];
     } else {
-      residual[p] += w.into_owner[f] * (in.boundary.value[b] - value[p]);
+      residual[p] += w.into_owner[f] * (in.boundary.value[b] - value[p]) - w.flux[f];
     }
     if (!step.closed) residual[p] -= step.face_flux[f] * value[p];
   }
@@ -103,70 +106,36 @@ int solve(const Stencil& s, double tolerance, double size, const char* name, Sca
   return outcome.iterations;
 }
 
-/// The flux by which the second solution differs from the first: upwind and diffusive part of their
-/// difference, and the deferred part.
-void add_difference(const Stencil& s, const FluidStep& step, const ScalarInput& in, ScalarWork& w) {
-  for (int f = 0; f < s.internal_faces; ++f) {
-    const double own = w.change[s.owner[f]];
-    const double other = w.change[s.neighbour[f]];
-    const double flux = step.face_flux[f];
-    w.flux[f] += flux * (flux >= 0 ? own : other) - in.conductance[f] * (other - own);
-  }
-  for (int f = s.internal_faces; f < s.faces; ++f) {
-    const double own = w.change[s.owner[f]];
-    const double flux = step.face_flux[f];
-    const bool leaves = flux >= 0 || !in.boundary.brings(f - s.internal_faces);
-    w.flux[f] += (leaves ? flux * own : 0.0) + in.conductance[f] * own;
-  }
-}
-
-/// The higher-order flux as a correction of the bounded solution `low`, limited. Returns the
-/// iterations.
-int correct(const Stencil& s, const FluidStep& step, const ScalarInput& in,
-            std::span<const Vector3> gradient_coefficients, Convection scheme, double tolerance,
-            double size, const char* name, std::span<const double> old, ScalarWork& w) {
+/// w.flux: the deferred fluxes of the old field, as far as it can take them.
+void correct(const Stencil& s, const FluidStep& step, const ScalarInput& in,
+             std::span<const Vector3> gradient_coefficients, Convection scheme,
+             std::span<const double> old, ScalarWork& w) {
+  const double rate = step.density / step.length;
   for (int b = 0; b < s.boundary_faces(); ++b) {
     const bool held = in.boundary.kind[b] == ScalarFace::value;
     w.jump[b] = held ? in.boundary.value[b] - old[s.owner[s.internal_faces + b]] : 0.0;
   }
   gradient(s, gradient_coefficients, old, w.jump, w.gradient);
   deferred_flux(s, scheme, step.face_flux, in.conductance, old, w.gradient, w.flux);
-  std::ranges::copy(w.left, w.residual.begin());
-  for (int f = 0; f < s.faces; ++f) {
-    w.residual[s.owner[f]] -= w.flux[f];
-    if (f < s.internal_faces) w.residual[s.neighbour[f]] += w.flux[f];
-  }
-  const int iterations = solve(s, tolerance, size, name, w);
-  add_difference(s, step, in, w);
-  return iterations;
+  for (int cell = 0; cell < s.cells; ++cell)
+    w.capacity[cell] = rate * s.volume[cell] * step.old_voidage[cell];
+  limit_correction(s, {old, in.boundary, w.into_owner}, w.capacity, w.correction, w.flux);
 }
 
-/// What left through the boundary by the low-order fluxes [kg c/s].
+/// What left through the boundary [kg c/s].
 void sum_boundary(const Stencil& s, const FluidStep& step, const ScalarInput& in,
                   const ScalarWork& w, std::span<double> boundary_flux) {
   for (int b = 0; b < s.boundary_faces(); ++b) {
     const int f = s.internal_faces + b;
-    const double own = w.low[s.owner[f]];
+    const double own = w.solved[s.owner[f]];
     const double flux = step.face_flux[f];
     if (in.boundary.kind[b] == ScalarFace::influx) {
       boundary_flux[b] = flux * own - in.boundary.value[b];
     } else {
       const bool enters = flux < 0 && in.boundary.brings(b);
-      boundary_flux[b] = flux * (enters ? in.boundary.value[b] : own) -
+      boundary_flux[b] = w.flux[f] + flux * (enters ? in.boundary.value[b] : own) -
                          in.conductance[f] * (in.boundary.value[b] - own);
     }
-  }
-}
-
-/// The limited flux of face f changes the amounts of its cells.
-void add_flux(const Stencil& s, int f, ScalarWork& w, std::span<double> boundary_flux) {
-  const int p = s.owner[f];
-  w.low[p] -= w.flux[f] / w.capacity[p];
-  if (f < s.internal_faces) {
-    const int n = s.neighbour[f];
-    w.low[n] += w.flux[f] / w.capacity[n];
-  } else {
-    boundary_flux[f - s.internal_faces] += w.flux[f];
   }
 }
 
@@ -175,13 +144,13 @@ void add_flux(const Stencil& s, int f, ScalarWork& w, std::span<double> boundary
 ScalarWork::ScalarWork(const Stencil& s) : solver(static_cast<std::size_t>(s.cells), 0.0) {
   const auto cells = static_cast<std::size_t>(s.cells);
   const auto faces = static_cast<std::size_t>(s.faces);
-  for (auto* values : {&diagonal, &capacity, &residual, &left, &change, &low})
+  for (auto* values : {&diagonal, &capacity, &residual, &change, &solved})
     values->assign(cells, 0.0);
   for (auto* values : {&into_owner, &into_neighbour, &flux}) values->assign(faces, 0.0);
   weight.assign(s.side_face.size(), 0.0);
   jump.assign(static_cast<std::size_t>(s.boundary_faces()), 0.0);
   gradient.assign(cells, Vector3::Zero());
-  resize(correction, s.cells);
+  resize(correction, s);
 }
 
 void diffusive_conductance(const Stencil& s, const ScalarBoundary& boundary,
@@ -240,24 +209,22 @@ int advance_scalar(const Stencil& s, const FluidStep& step, const ScalarInput& i
                    double tolerance, const char* name, ScalarWork& w, std::span<double> value,
                    std::span<double> boundary_flux) {
   assemble(s, step, in, w);
+  std::ranges::fill(w.flux, 0.0);
+  if (scheme != Convection::upwind || !s.orthogonal)
+    correct(s, step, in, gradient_coefficients, scheme, value, w);
   evaluate_residual(s, step, in, value, value, w, w.residual);
   double size = 0;
   for (int cell = 0; cell < s.cells; ++cell) size += std::pow(w.diagonal[cell] * value[cell], 2);
-  int iterations = solve(s, tolerance, size, name, w);
-  for (int cell = 0; cell < s.cells; ++cell) w.low[cell] = value[cell] + w.change[cell];
-  evaluate_residual(s, step, in, value, w.low, w, w.left);
-  const bool corrected = scheme != Convection::upwind || !s.orthogonal;
-  if (corrected) {
-    iterations +=
-        correct(s, step, in, gradient_coefficients, scheme, tolerance, size, name, value, w);
-  }
+  const int iterations = solve(s, tolerance, size, name, w);
+  for (int cell = 0; cell < s.cells; ++cell) w.solved[cell] = value[cell] + w.change[cell];
+  evaluate_residual(s, step, in, value, w.solved, w, w.residual);
+  // The boundary's part belongs to the solved field: before the residual moves it.
   sum_boundary(s, step, in, w, boundary_flux);
-  for (int cell = 0; cell < s.cells; ++cell) w.low[cell] += w.left[cell] / w.capacity[cell];
-  if (corrected) {
-    limit_correction(s, in.boundary, w.into_owner, w.capacity, w.low, value, w.correction, w.flux);
-    for (int f = 0; f < s.faces; ++f) add_flux(s, f, w, boundary_flux);
+  const double rate = step.density / step.length;
+  for (int cell = 0; cell < s.cells; ++cell) {
+    const double capacity = rate * s.volume[cell] * step.voidage[cell];
+    value[cell] = w.solved[cell] + w.residual[cell] / capacity;
   }
-  std::ranges::copy(w.low, value.begin());
   return iterations;
 }
 

@@ -6,14 +6,15 @@
 // That turns it into the net form, in which only differences of c stand:
 //     M^n (c^{n+1}_P − c^n_P)/Δt = Σ_f a_f (c^{n+1}_N − c^{n+1}_P) + Q,   a_f = max(−Φ_f, 0) + (…)
 //     g
-// 1. Implicit upwind: an M-matrix with row sums M^n/Δt, so c stays between its old and boundary
-//    values for any Δt. (Legacy continuity: the fluxes do not close, and what they leave,
+// 1. The higher-order part of the convected flux (and the non-orthogonal part of the diffusive one)
+//    of the old field, cut so that they make no new extremum of it. Deferred like this they stand
+//    in the steady state, too, and nothing of Δt with them, where nothing had to be cut.
+// 2. Implicit upwind: an M-matrix with row sums M^n/Δt, so c stays between its values of 1 and
+// those
+//    of the boundary for any Δt. (Legacy continuity: the fluxes do not close, and what they leave,
 //    r = (M^{n+1} − M^n)/Δt + Σ Φ, stands on the diagonal: a uniform field then drifts.)
-// 2. The same system with the higher-order part of the convection, deferred from c^n: in a steady
-//    state nothing of Δt is left in it.
-// 3. Amounts: the fluxes of 1, computed from the solved field, change M c. What the solver left
-//    moves c by its residual, never the sum over the cells. Then the difference of the fluxes of 2
-//    and 1, cut by Zalesak's limiter.
+// 3. Amounts: the fluxes, computed from the solved field, change M c. What the solver left moves c
+//    by its residual over M^{n+1}/Δt, never the sum over the cells.
 #pragma once
 
 #include <span>
@@ -49,14 +50,14 @@ struct ScalarInput {
 struct ScalarWork {
   explicit ScalarWork(const Stencil& stencil);
 
-  std::vector<double> into_owner, into_neighbour;   ///< a_f [kg/s], one a face
-  std::vector<double> weight;                       ///< [kg/s], one a side
-  std::vector<double> diagonal;                     ///< [kg/s], one a cell
-  std::vector<double> capacity;                     ///< M^{n+1}/Δt [kg/s], one a cell
-  std::vector<double> residual, left, change, low;  ///< one a cell
-  std::vector<double> flux;                         ///< [kg c/s], one a face
-  std::vector<double> jump;                         ///< c_b − c_P, one a boundary face
-  std::vector<Vector3> gradient;                    ///< [c/m], one a cell
+  std::vector<double> into_owner, into_neighbour;  ///< a_f [kg/s], one a face
+  std::vector<double> weight;                      ///< [kg/s], one a side
+  std::vector<double> diagonal;                    ///< [kg/s], one a cell
+  std::vector<double> capacity;                    ///< M^n/Δt [kg/s], one a cell
+  std::vector<double> residual, change, solved;    ///< one a cell
+  std::vector<double> flux;                        ///< deferred and cut [kg c/s], one a face
+  std::vector<double> jump;                        ///< c_b − c_P, one a boundary face
+  std::vector<Vector3> gradient;                   ///< [c/m], one a cell
   CorrectionWork correction;
   BicgstabWork<double> solver;
 };

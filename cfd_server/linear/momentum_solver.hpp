@@ -1,5 +1,5 @@
-// The linear system of the momentum predictor: three velocity components, coupled only at free-slip
-// walls.
+// The linear system of the momentum predictor: three velocity components, coupled only at walls
+// with slip.
 //
 // Diagonally dominant, not symmetric: solved by BiCGSTAB.
 #pragma once
@@ -11,12 +11,14 @@
 
 namespace fluxpact {
 
-/// A free-slip face: weight · (u − (u·n) n) is missing from what the diagonal takes off.
+/// A face along which fluid slips: weight · (u − (u·n) n) is missing from what the diagonal takes
+/// off.
 struct SlipFace {
   int face = 0;
   int cell = 0;
   Vector3 normal{0, 0, 0};
-  double weight = 0;  ///< [kg/s]
+  double slipping = 1;  ///< [-] share of the tangential velocity difference that is no shear
+  double weight = 0;    ///< [kg/s] of this step
 };
 
 /// diagonal_P x_P − Σ_sides weight x_other − Σ_slip weight (x − (x·n) n) = residual. The caller

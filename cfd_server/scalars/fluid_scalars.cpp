@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "cfd_server/discretisation/gradient.hpp"
+#include "cfd_server/vans/profile.hpp"
 #include "proto/base/errors.hpp"
-#include "proto/base/expression.hpp"
 
 namespace fluxpact {
 namespace {
@@ -15,12 +15,12 @@ namespace {
 struct PatchFormula {
   int first = 0;
   int last = 0;
-  Expression formula;
+  FormulaValue formula;
 };
 
 ScalarFace rule(const ScalarBoundarySettings& entry, BoundaryType type) {
-  if (!entry.flux.empty()) return ScalarFace::influx;
-  if (entry.value.empty()) return ScalarFace::zero_gradient;
+  if (entry.flux) return ScalarFace::influx;
+  if (!entry.value) return ScalarFace::zero_gradient;
   return type == BoundaryType::pressure ? ScalarFace::backflow : ScalarFace::value;
 }
 
@@ -46,7 +46,7 @@ struct FluidScalars::Scalar {
   double factor = 1;     ///< amount over M c: 1, or the heat capacity
   double molecular = 0;  ///< [kg/(m s)]
   std::vector<PatchFormula> formulas;
-  std::optional<Expression> source;
+  std::optional<FormulaValue> source;
   ScalarBoundary boundary;
   std::vector<Vector3> gradient;  ///< coefficients, one a side
   ScalarField committed, candidate;
@@ -59,7 +59,7 @@ FluidScalars::Scalar::Scalar(const std::string& its_name, const ScalarSettings& 
   factor = heat ? settings.heat_capacity : 1.0;
   molecular = heat ? settings.conductivity / settings.heat_capacity
                    : scene.fluid.density * settings.diffusivity;
-  if (!settings.source.empty()) source.emplace(settings.source);
+  if (settings.source) source.emplace(*settings.source);
   const auto faces = static_cast<std::size_t>(s.boundary_faces());
   boundary.kind.assign(faces, ScalarFace::zero_gradient);
   boundary.value.assign(faces, 0.0);
@@ -75,7 +75,7 @@ FluidScalars::Scalar::Scalar(const std::string& its_name, const ScalarSettings& 
     const int first = patch->first - s.internal_faces;
     for (int b = first; b < first + patch->size; ++b) boundary.kind[b] = kind;
     formulas.push_back({first, first + patch->size,
-                        Expression(kind == ScalarFace::influx ? entry.flux : entry.value)});
+                        FormulaValue(kind == ScalarFace::influx ? *entry.flux : *entry.value)});
   }
   std::vector<std::uint8_t> held(faces, 0);
   std::ranges::transform(boundary.kind, held.begin(), [](ScalarFace kind) {
@@ -114,7 +114,7 @@ FluidScalars::~FluidScalars() = default;
 
 void FluidScalars::start() {
   for (Scalar& scalar : scalars_) {
-    const Expression initial(scalar.settings.initial);
+    const FormulaValue initial(scalar.settings.initial);
     for (int cell = 0; cell < stencil_.cells; ++cell) {
       const Vector3& at = stencil_.centre[cell];
       scalar.committed.value[cell] = finite(initial(at, 0), scalar.name, "initial", at, 0);

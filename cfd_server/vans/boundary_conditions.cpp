@@ -25,12 +25,6 @@ BoundarySettings settings_of(const Scene& scene, const Patch& patch) {
       patch.name, patch.name);
 }
 
-double patch_area(const Mesh& mesh, const Patch& patch) {
-  double area = 0;
-  for (int f = patch.first; f < patch.first + patch.size; ++f) area += mesh.face_areas[f].norm();
-  return area;
-}
-
 void check_entry(const std::string& name, const BoundarySettings& entry) {
   if (entry.type == BoundaryType::velocity &&
       entry.superficial.has_value() == entry.interstitial.has_value()) {
@@ -44,9 +38,89 @@ void check_entry(const std::string& name, const BoundarySettings& entry) {
   }
 }
 
+/// Length of the path from the cell's centre to the wall, along its normal [m].
+double depth(const Stencil& s, std::size_t face) { return s.area_size[face] / s.conductance[face]; }
+
+PatchCondition make_condition(const BoundarySettings& entry, const Mesh& mesh, const Patch& patch) {
+  const VectorFormula velocity = entry.superficial    ? *entry.superficial
+                                 : entry.interstitial ? *entry.interstitial
+                                                      : entry.velocity;
+  const bool mass_flow = entry.type == BoundaryType::mass_flow;
+  PatchCondition condition{.first = patch.first - mesh.internal_faces(),
+                           .size = patch.size,
+                           .type = entry.type,
+                           .is_interstitial = entry.interstitial.has_value(),
+                           .velocity = VectorValue(velocity),
+                           .scalar = FormulaValue(mass_flow ? *entry.rate : entry.value),
+                           .factor = ProfileFactor(entry)};
+  condition.varies = condition.velocity.is_formula() || condition.scalar.is_formula() ||
+                     condition.factor.varies_in_time();
+  double area = 0;
+  for (int f = patch.first; f < patch.first + patch.size; ++f) {
+    const double size = mesh.face_areas[f].norm();
+    area += size;
+    condition.centre += size * mesh.face_centres[f];
+    condition.area += size * (mass_flow ? condition.factor.shape(mesh.face_centres[f]) : 1.0);
+  }
+  if (area > 0) condition.centre /= area;
+  if (mass_flow && !(condition.area > 0)) {
+    throw ConfigError(
+        "fluid.boundaries.{}.profile: the tables give the patch no positive mean, so the mass flow "
+        "cannot be spread over it",
+        patch.name);
+  }
+  return condition;
+}
+
+void add_kinds(const BoundarySettings& entry, const Stencil& s, const PatchCondition& patch,
+               BoundaryConditions& conditions) {
+  for (int b = patch.first; b < patch.first + patch.size; ++b) {
+    if (entry.type == BoundaryType::pressure) conditions.kind[b] = FaceKind::pressure;
+    if (entry.type != BoundaryType::wall || entry.slip == Slip::none) continue;
+    conditions.kind[b] = FaceKind::slip;
+    const double distance = depth(s, static_cast<std::size_t>(b + s.internal_faces));
+    conditions.grip[b] = entry.slip == Slip::free ? 0.0 : distance / (distance + entry.slip_length);
+  }
+}
+
+/// p_b − ρ g·x_f [Pa].
+double boundary_pressure(const BoundaryConditions& conditions, const PatchCondition& patch, int b,
+                         double time) {
+  const Vector3& x = conditions.centre[b];
+  const double given = patch.scalar(x, time) * patch.factor.shape(x) * patch.factor.pace(time);
+  return given - conditions.density * conditions.gravity.dot(x);
+}
+
+void evaluate(const Stencil& s, const BoundaryConditions& conditions, const PatchCondition& patch,
+              double time, std::vector<Vector3>& given, std::vector<double>& pressure) {
+  const double pace = patch.factor.pace(time);
+  for (int b = patch.first; b < patch.first + patch.size; ++b) {
+    const Vector3& x = conditions.centre[b];
+    const Vector3 normal = s.area[b + s.internal_faces] / s.area_size[b + s.internal_faces];
+    switch (patch.type) {
+      case BoundaryType::velocity:
+        given[b] = pace * patch.factor.shape(x) * patch.velocity(x, time);
+        break;
+      case BoundaryType::mass_flow:
+        given[b] = -(pace * patch.scalar(patch.centre, time) * patch.factor.shape(x) /
+                     (conditions.density * patch.area)) *
+                   normal;
+        break;
+      case BoundaryType::pressure:
+        pressure[b] = boundary_pressure(conditions, patch, b, time) - conditions.level;
+        break;
+      case BoundaryType::wall: {
+        const Vector3 velocity = pace * patch.velocity(x, time);
+        given[b] = velocity - velocity.dot(normal) * normal;
+        break;
+      }
+    }
+  }
+}
+
 }  // namespace
 
-BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh) {
+BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh, const Stencil& s) {
   for (const auto& [name, entry] : scene.fluid.boundaries) {
     if (mesh.find_patch(name) == nullptr && name != "walls") {
       throw ConfigError("fluid.boundaries.{}: the mesh has no such patch; it has {}", name,
@@ -54,63 +128,51 @@ BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh) {
     }
     check_entry(name, entry);
   }
-  const auto faces = static_cast<std::size_t>(mesh.faces() - mesh.internal_faces());
+  const auto faces = static_cast<std::size_t>(s.boundary_faces());
   BoundaryConditions conditions;
   conditions.kind.assign(faces, FaceKind::fixed_flux);
-  conditions.given.assign(faces, Vector3::Zero());
-  conditions.is_interstitial.assign(faces, 0);
-  conditions.pressure.assign(faces, 0.0);
-  double area_of_pressure = 0;
+  conditions.grip.assign(faces, 1.0);
+  conditions.centre.assign(mesh.face_centres.begin() + mesh.internal_faces(),
+                           mesh.face_centres.end());
+  conditions.density = scene.fluid.density;
+  conditions.gravity = scene.scene.gravity;
+  double weight = 0;
   for (const Patch& patch : mesh.patches) {
     const BoundarySettings entry = settings_of(scene, patch);
-    const double area = patch_area(mesh, patch);
-    for (int f = patch.first; f < patch.first + patch.size; ++f) {
-      const int b = f - mesh.internal_faces();
-      const double size = mesh.face_areas[f].norm();
-      switch (entry.type) {
-        case BoundaryType::velocity:
-          conditions.given[b] = entry.superficial ? *entry.superficial : *entry.interstitial;
-          conditions.is_interstitial[b] = entry.interstitial ? 1 : 0;
-          break;
-        case BoundaryType::mass_flow:
-          conditions.given[b] =
-              -(*entry.rate / (scene.fluid.density * area)) * mesh.face_areas[f] / size;
-          break;
-        case BoundaryType::pressure:
-          conditions.kind[b] = FaceKind::pressure;
-          conditions.pressure[b] =
-              entry.value - scene.fluid.density * scene.scene.gravity.dot(mesh.face_centres[f]);
-          conditions.level += size * conditions.pressure[b];
-          area_of_pressure += size;
-          break;
-        case BoundaryType::wall:
-          if (entry.slip == Slip::free) conditions.kind[b] = FaceKind::free_slip;
-          break;
-      }
+    const PatchCondition& condition =
+        conditions.patches.emplace_back(make_condition(entry, mesh, patch));
+    add_kinds(entry, s, condition, conditions);
+    if (condition.type != BoundaryType::pressure) continue;
+    for (int b = condition.first; b < condition.first + condition.size; ++b) {
+      const double size = s.area_size[b + s.internal_faces];
+      conditions.level += size * boundary_pressure(conditions, condition, b, 0);
+      weight += size;
     }
   }
-  if (area_of_pressure > 0) conditions.level /= area_of_pressure;
-  for (std::size_t b = 0; b < faces; ++b) {
-    if (conditions.kind[b] == FaceKind::pressure) conditions.pressure[b] -= conditions.level;
-  }
+  if (weight > 0) conditions.level /= weight;
   return conditions;
 }
 
 void update_boundary_values(const Stencil& s, const BoundaryConditions& conditions,
-                            std::span<const double> voidage, BoundaryValues& values) {
+                            std::span<const double> voidage, double time, BoundaryValues& values) {
   const auto faces = static_cast<std::size_t>(s.boundary_faces());
+  const bool first = values.given.size() != faces;
+  for (auto* field : {&values.given, &values.superficial, &values.velocity})
+    field->resize(faces, Vector3::Zero());
   values.flux.resize(faces);
-  values.superficial.resize(faces);
-  values.velocity.resize(faces);
-  for (std::size_t b = 0; b < faces; ++b) {
-    const std::size_t f = b + static_cast<std::size_t>(s.internal_faces);
-    const double own_voidage = voidage[s.owner[f]];
-    const Vector3& given = conditions.given[b];
-    values.superficial[b] =
-        conditions.is_interstitial[b] != 0 ? Vector3(own_voidage * given) : given;
-    values.velocity[b] = conditions.is_interstitial[b] != 0 ? given : Vector3(given / own_voidage);
-    values.flux[b] =
-        conditions.kind[b] == FaceKind::fixed_flux ? values.superficial[b].dot(s.area[f]) : 0.0;
+  values.pressure.resize(faces);
+  for (const PatchCondition& patch : conditions.patches) {
+    if (first || patch.varies) evaluate(s, conditions, patch, time, values.given, values.pressure);
+    for (int b = patch.first; b < patch.first + patch.size; ++b) {
+      const double own_voidage = voidage[s.owner[b + s.internal_faces]];
+      const Vector3& given = values.given[b];
+      const bool interstitial = patch.is_interstitial || patch.type == BoundaryType::wall;
+      values.superficial[b] = interstitial ? Vector3(own_voidage * given) : given;
+      values.velocity[b] = interstitial ? given : Vector3(given / own_voidage);
+      const bool through =
+          patch.type == BoundaryType::velocity || patch.type == BoundaryType::mass_flow;
+      values.flux[b] = through ? values.superficial[b].dot(s.area[b + s.internal_faces]) : 0.0;
+    }
   }
 }
 
@@ -124,9 +186,11 @@ void boundary_jump(const Stencil& s, const BoundaryConditions& conditions,
       case FaceKind::fixed_flux:
         jump[b] = prescribed[b] - own;
         break;
-      case FaceKind::free_slip: {
+      case FaceKind::slip: {
         const Vector3 normal = s.area[f] / s.area_size[f];
-        jump[b] = -own.dot(normal) * normal;
+        const Vector3 difference = prescribed[b] - own;
+        const double across = difference.dot(normal);
+        jump[b] = across * normal + conditions.grip[b] * (difference - across * normal);
         break;
       }
       case FaceKind::pressure:

@@ -12,27 +12,29 @@ void resize(FaceCoefficients& c, const Stencil& s) {
 
 void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
                     const MomentumCoefficients& m, std::span<const double> voidage,
-                    std::span<const double> old_flux, double density, double window,
-                    FaceCoefficients& c) {
+                    std::span<const double> pressure_share, const FluidState& old_state,
+                    const TimeCoefficients& time, FaceCoefficients& c) {
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
     if (!internal && conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
     const int p = s.owner[f];
     const double w = s.weight[f];
-    const double part_p = w / (voidage[p] * voidage[p] * s.volume[p]);
+    const double part_p = w / (pressure_share[p] * voidage[p] * s.volume[p]);
     double transport = part_p * m.transport[p];
     double rest = part_p * (m.inertia[p] + m.drag[p]);
-    double inverse_voidage = w / voidage[p];
+    double inverse_share = w / pressure_share[p];
     if (internal) {
       const int n = s.neighbour[f];
-      const double part_n = (1 - w) / (voidage[n] * voidage[n] * s.volume[n]);
+      const double part_n = (1 - w) / (pressure_share[n] * voidage[n] * s.volume[n]);
       transport += part_n * m.transport[n];
       rest += part_n * (m.inertia[n] + m.drag[n]);
-      inverse_voidage += (1 - w) / voidage[n];
+      inverse_share += (1 - w) / pressure_share[n];
     }
     c.transport_resistance[f] = transport;
     c.mobility[f] = 1 / (transport + rest);
-    c.memory[f] = density * old_flux[f] / window * inverse_voidage;
+    double carried = time.last * old_state.face_flux[f];
+    if (time.two_steps()) carried -= time.before * old_state.before.face_flux[f];
+    c.memory[f] = carried / time.step * inverse_share;
   }
 }
 
@@ -67,12 +69,11 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
   }
 }
 
-void add_pressure_flux(const Stencil& s, const BoundaryConditions& conditions,
-                       const FaceCoefficients& c, std::span<const double> pressure,
-                       std::span<double> flux) {
+void add_pressure_flux(const Stencil& s, const BoundaryValues& values, const FaceCoefficients& c,
+                       std::span<const double> pressure, std::span<double> flux) {
   for (int f = 0; f < s.faces; ++f) {
     const double outside =
-        f < s.internal_faces ? pressure[s.neighbour[f]] : conditions.pressure[f - s.internal_faces];
+        f < s.internal_faces ? pressure[s.neighbour[f]] : values.pressure[f - s.internal_faces];
     flux[f] -= c.mobility[f] * s.conductance[f] * (outside - pressure[s.owner[f]]);
   }
 }

@@ -4,8 +4,10 @@
 // voidage and drag, so a voidage jump in one cell is exact. The face remembers its own flux φ^n;
 // convection and viscous stress come as net cell forces, their diagonal multiplies a second-order
 // face value Q:
-//     φ_f = K { H − g (p_N − p_P) − k·∇p },   1/K = w R_P + (1−w) R_N,   R = (A_t + A_b + A_c)/(ε²
-//     V) H = [w G_P + (1−w) G_N]·A + m φ^n + R^c_f Q,   G = (C + S)/(ε V)
+//     φ_f = K { H − g (p_N − p_P) − k·∇p },   1/K = w R_P + (1−w) R_N
+//     R = (A_t + A_b + A_c)/(χ ε V),   G = (C + S)/(χ V)
+//     H = [w G_P + (1−w) G_N]·A + m φ^n + R^c_f Q
+// with χ as in momentum.hpp: the face only adds two half-cells, whatever the model.
 // In a steady state A_t, A_c and the old flux drop out: the result does not depend on the window.
 #pragma once
 
@@ -22,7 +24,7 @@ namespace fluxpact {
 struct FaceCoefficients {
   std::vector<double> mobility;              ///< K [m³ s/kg]; 0 where the flux is given
   std::vector<double> transport_resistance;  ///< R^c_f [kg/(m³ s)]
-  std::vector<double> memory;                ///< m φ^n [kg/s²]: inertia of the old flux
+  std::vector<double> memory;                ///< m φ^n [kg/s²]: inertia of the old fluxes
 };
 
 /// How much of Q is rebuilt from the cells: all on uniform lattices; elsewhere mostly the face's
@@ -31,15 +33,15 @@ double rebuilt_share(const Stencil& stencil);
 
 void resize(FaceCoefficients& coefficients, const Stencil& stencil);
 
-/// old_flux: φ^n [m³/s].
+/// pressure_share: χ, one a cell. The old state gives the fluxes that the faces remember.
 void assemble_faces(const Stencil& stencil, const BoundaryConditions& conditions,
                     const MomentumCoefficients& momentum, std::span<const double> voidage,
-                    std::span<const double> old_flux, double density, double window,
-                    FaceCoefficients& coefficients);
+                    std::span<const double> pressure_share, const FluidState& old_state,
+                    const TimeCoefficients& time, FaceCoefficients& coefficients);
 
 /// What the flux of one corrector is made of.
 struct FaceFluxInput {
-  std::span<const Vector3> specific_force;        ///< G = (C(u) + S)/(ε V) [N/m³], one a cell
+  std::span<const Vector3> specific_force;        ///< G = (C(u) + S)/(χ V) [N/m³], one a cell
   std::span<const Vector3> superficial;           ///< q = ε u [m/s], one a cell
   std::span<const Matrix3> superficial_gradient;  ///< ∇q [1/s], one a cell
   std::span<const double> last_flux;  ///< φ of the corrector before [m³/s], one a face
@@ -53,7 +55,7 @@ void explicit_flux(const Stencil& stencil, const BoundaryConditions& conditions,
                    const FaceFluxInput& input, std::span<double> flux);
 
 /// flux −= K g (p_N − p_P), with p_b at pressure faces [Pa].
-void add_pressure_flux(const Stencil& stencil, const BoundaryConditions& conditions,
+void add_pressure_flux(const Stencil& stencil, const BoundaryValues& values,
                        const FaceCoefficients& coefficients, std::span<const double> pressure,
                        std::span<double> flux);
 

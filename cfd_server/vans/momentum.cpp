@@ -7,25 +7,29 @@ namespace {
 
 void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
                     const FluidProperties& fluid, std::span<const double> flux,
-                    std::span<const double> voidage, TransportCoefficients& faces) {
+                    std::span<const double> voidage, std::span<const double> viscosity,
+                    TransportCoefficients& faces) {
+  const auto stress = [&](int cell) {
+    return (viscosity.empty() ? fluid.viscosity : viscosity[cell]) * voidage[cell];
+  };
   for (int f = 0; f < s.internal_faces; ++f) {
     const double w = s.weight[f];
-    const double face_voidage = (1 - w) * voidage[s.owner[f]] + w * voidage[s.neighbour[f]];
     faces.mass_flux[f] = flux[f];
-    faces.diffusion[f] = fluid.viscosity * face_voidage * s.conductance[f];
+    faces.diffusion[f] =
+        ((1 - w) * stress(s.owner[f]) + w * stress(s.neighbour[f])) * s.conductance[f];
   }
   for (int f = s.internal_faces; f < s.faces; ++f) {
     // Through a pressure face the cell's own velocity passes, either way: no net force.
     const bool fixed = conditions.kind[f - s.internal_faces] == FaceKind::fixed_flux;
     faces.mass_flux[f] = fixed ? flux[f] : 0.0;
-    faces.diffusion[f] = fixed ? fluid.viscosity * voidage[s.owner[f]] * s.conductance[f] : 0.0;
+    faces.diffusion[f] = fixed ? stress(s.owner[f]) * s.conductance[f] : 0.0;
   }
   finish_coefficients(faces);
   for (int f = s.internal_faces; f < s.faces; ++f) {
-    // A free-slip wall holds the normal part of the velocity only: it has a weight, but no gradient
-    // of its own.
-    if (conditions.kind[f - s.internal_faces] == FaceKind::free_slip) {
-      faces.into_owner[f] = fluid.viscosity * voidage[s.owner[f]] * s.conductance[f];
+    // A wall that fluid slips along holds the normal part of the velocity and a share of the rest:
+    // it has a weight, but no gradient of its own.
+    if (conditions.kind[f - s.internal_faces] == FaceKind::slip) {
+      faces.into_owner[f] = stress(s.owner[f]) * s.conductance[f];
     }
   }
 }
@@ -45,30 +49,39 @@ void resize(MomentumCoefficients& c, const Stencil& s) {
 
 void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
                        const FluidProperties& fluid, const FluidState& old_state,
-                       const SolidsInput& solids, double window, MomentumCoefficients& c) {
-  assemble_faces(s, conditions, fluid, old_state.face_flux, solids.voidage, c.faces);
+                       const SolidsInput& solids, const TimeCoefficients& time,
+                       std::span<const double> convecting, std::span<const double> viscosity,
+                       MomentumCoefficients& c) {
+  assemble_faces(s, conditions, fluid, convecting, solids.voidage, viscosity, c.faces);
   std::ranges::fill(c.transport, 0.0);
   for (int f = 0; f < s.faces; ++f) {
     c.transport[s.owner[f]] += c.faces.into_owner[f];
     if (f < s.internal_faces) c.transport[s.neighbour[f]] += c.faces.into_neighbour[f];
   }
   for (int cell = 0; cell < s.cells; ++cell) {
-    c.inertia[cell] = fluid.density * s.volume[cell] * old_state.voidage[cell] / window;
+    const double mass = fluid.density * s.volume[cell] / time.step;
+    c.inertia[cell] = mass * time.last * old_state.voidage[cell];
+    Vector3 carried = c.inertia[cell] * old_state.velocity[cell];
+    if (time.two_steps()) {
+      const double before = mass * time.before * old_state.before.voidage[cell];
+      c.inertia[cell] -= before;
+      carried -= before * old_state.before.velocity[cell];
+    }
     c.drag[cell] = solids.drag_coefficient[cell];
     c.source[cell] = solids.drag_source[cell];
-    c.known[cell] = c.inertia[cell] * old_state.velocity[cell] + c.source[cell];
+    c.known[cell] = carried + c.source[cell];
   }
 }
 
 int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
-                     std::span<const double> voidage, std::span<const Vector3> force,
+                     std::span<const double> pressure_share, std::span<const Vector3> force,
                      std::span<const Vector3> pressure_gradient, MomentumSolver& solver,
                      std::span<Vector3> velocity) {
   double scale = 0;
   for (int cell = 0; cell < s.cells; ++cell) {
     const double diagonal = c.inertia[cell] + c.drag[cell];
     solver.diagonal[cell] = diagonal + c.transport[cell];
-    const Vector3 pressure_force = voidage[cell] * s.volume[cell] * pressure_gradient[cell];
+    const Vector3 pressure_force = pressure_share[cell] * s.volume[cell] * pressure_gradient[cell];
     const Vector3 resisted = diagonal * velocity[cell];
     solver.residual[cell] = c.known[cell] + force[cell] - resisted - pressure_force;
     // Of all terms: in a fluid that starts from rest most of them vanish.
@@ -81,21 +94,21 @@ int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
                           : s.side_sign[side] > 0 ? c.faces.into_owner[f]
                                                   : c.faces.into_neighbour[f];
   }
-  for (SlipFace& face : solver.slip) face.weight = c.faces.into_owner[face.face];
+  for (SlipFace& face : solver.slip) face.weight = face.slipping * c.faces.into_owner[face.face];
   const int iterations = solver.solve(scale);
   for (int cell = 0; cell < s.cells; ++cell) velocity[cell] += solver.change[cell];
   return iterations;
 }
 
 void close_momentum(const Stencil& s, const MomentumCoefficients& c,
-                    std::span<const double> voidage, std::span<const Vector3> force,
+                    std::span<const double> pressure_share, std::span<const Vector3> force,
                     std::span<const Vector3> velocity_before, std::span<const Vector3> velocity,
                     std::span<Vector3> pressure_gradient) {
   for (int cell = 0; cell < s.cells; ++cell) {
     pressure_gradient[cell] = (c.known[cell] + force[cell] +
                                c.transport[cell] * (velocity_before[cell] - velocity[cell]) -
                                (c.inertia[cell] + c.drag[cell]) * velocity[cell]) /
-                              (voidage[cell] * s.volume[cell]);
+                              (pressure_share[cell] * s.volume[cell]);
   }
 }
 

@@ -1,11 +1,12 @@
 // The momentum balance of the fluid in each cell over one window, and its implicit predictor.
 //
-// For u = u^{n+1}, implicit Euler, pressure shared in proportion to the voidage (model A):
-//     (A_t + A_b) u_P − C_P(u) + ε V ∇p = B_t + S
-// A_t = ρ V ε^n/Δt is the inertia, B_t = A_t u^n, A_b the drag coefficient, S the drag source, C_P
-// the net force of convection and viscous stress ε μ ∇u. It equals the conservative form because
-// continuity holds exactly. The transposed part of the stress is left out: it vanishes where ε is
-// uniform, and where ε varies drag outweighs it.
+// For u = u^{n+1}, with χ = ε where fluid and particles share the pressure gradient (model A) and
+// χ = 1 where the fluid bears it alone (model B; Gidaspow, Multiphase Flow and Fluidization, 1994):
+//     (A_t + A_b) u_P − C_P(u) + χ V ∇p = B_t + S
+// A_t = ρ V ε^n/Δt is the inertia, B_t = A_t u^n (Euler; see time_scheme.hpp), A_b the drag
+// coefficient, S the drag source, C_P the net force of convection and viscous stress ε μ ∇u. It
+// equals the conservative form because continuity holds exactly. The transposed part of the stress
+// is left out: it vanishes where ε is uniform, and where ε varies drag outweighs it.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "cfd_server/linear/momentum_solver.hpp"
 #include "cfd_server/vans/boundary_conditions.hpp"
 #include "cfd_server/vans/solver.hpp"
+#include "cfd_server/vans/time_scheme.hpp"
 
 namespace fluxpact {
 
@@ -38,24 +40,27 @@ struct MomentumCoefficients {
 
 void resize(MomentumCoefficients& coefficients, const Stencil& stencil);
 
-/// Fill the coefficients from the committed state (whose flux convects) and the solids at the
-/// window's end.
+/// Fill the coefficients from the last state and the solids at the step's end. convecting: Φ
+/// [kg/s], one a face. viscosity [Pa s]: one a cell where turbulence adds to the fluid's own, else
+/// empty.
 void assemble_momentum(const Stencil& stencil, const BoundaryConditions& conditions,
                        const FluidProperties& fluid, const FluidState& old_state,
-                       const SolidsInput& solids, double window,
+                       const SolidsInput& solids, const TimeCoefficients& time,
+                       std::span<const double> convecting, std::span<const double> viscosity,
                        MomentumCoefficients& coefficients);
 
 /// velocity [m/s] += the change that solves the predictor with the deferred parts of `force`
-/// frozen: residual = known + force − (A_t + A_b) u − ε V ∇p. Returns the iterations.
+/// frozen: residual = known + force − (A_t + A_b) u − χ V ∇p. pressure_share: χ, one a cell.
+/// Returns the iterations.
 int predict_velocity(const Stencil& stencil, const MomentumCoefficients& coefficients,
-                     std::span<const double> voidage, std::span<const Vector3> force,
+                     std::span<const double> pressure_share, std::span<const Vector3> force,
                      std::span<const Vector3> pressure_gradient, MomentumSolver& solver,
                      std::span<Vector3> velocity);
 
 /// ∇p [Pa/m] that closes each cell's balance: [known + C(u_before) + A_c u_before − (A_t + A_b +
-/// A_c) u]/(ε V).
+/// A_c) u]/(χ V).
 void close_momentum(const Stencil& stencil, const MomentumCoefficients& coefficients,
-                    std::span<const double> voidage, std::span<const Vector3> force,
+                    std::span<const double> pressure_share, std::span<const Vector3> force,
                     std::span<const Vector3> velocity_before, std::span<const Vector3> velocity,
                     std::span<Vector3> pressure_gradient);
 

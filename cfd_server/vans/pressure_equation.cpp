@@ -28,7 +28,7 @@ void assemble_pressure_matrix(const Stencil& s, const BoundaryConditions& condit
   }
 }
 
-void assemble_pressure_rhs(const Stencil& s, const BoundaryConditions& conditions,
+void assemble_pressure_rhs(const Stencil& s, const BoundaryValues& values,
                            const FaceCoefficients& c, std::span<const double> face_scale,
                            std::span<const double> source, std::span<const double> flux,
                            std::span<double> rhs) {
@@ -40,7 +40,7 @@ void assemble_pressure_rhs(const Stencil& s, const BoundaryConditions& condition
   }
   for (int f = s.internal_faces; f < s.faces; ++f) {
     const double through_pressure =
-        c.mobility[f] * s.conductance[f] * conditions.pressure[f - s.internal_faces];
+        c.mobility[f] * s.conductance[f] * values.pressure[f - s.internal_faces];
     rhs[s.owner[f]] -= face_scale[f] * (flux[f] - through_pressure);
   }
 }

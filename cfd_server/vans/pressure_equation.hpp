@@ -18,7 +18,7 @@ void assemble_pressure_matrix(const Stencil& stencil, const BoundaryConditions& 
 
 /// rhs = source − Σ s φ_explicit + pressure faces. source [m³/s] one a cell, flux: explicit part
 /// [m³/s] one a face.
-void assemble_pressure_rhs(const Stencil& stencil, const BoundaryConditions& conditions,
+void assemble_pressure_rhs(const Stencil& stencil, const BoundaryValues& values,
                            const FaceCoefficients& coefficients, std::span<const double> face_scale,
                            std::span<const double> source, std::span<const double> flux,
                            std::span<double> rhs);

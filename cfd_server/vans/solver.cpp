@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "cfd_server/vans/inner_steps.hpp"
 #include "cfd_server/vans/window_check.hpp"
 #include "cfd_server/vans/window_solver.hpp"
 #include "proto/base/errors.hpp"
@@ -58,16 +59,23 @@ struct VansSolver::Impl {
   Impl(const Scene& scene, const Mesh& mesh)
       : problem(make_problem(scene, mesh)),
         fields(problem, mesh),
-        initial_superficial(scene.fluid.initial.superficial) {
+        initial_superficial(scene.fluid.initial.superficial),
+        voidage(problem.stencil.volume.size()) {
     resize(committed, problem.stencil);
     resize(candidate, problem.stencil);
   }
 
   void warn_once();
+  void advance_step(const FluidState& from, const Window& step, const SolidsInput& solids,
+                    const Progress& progress, FluidState& to);
+  void finish_window(const Window& window, int inner_steps);
 
   FluidProblem problem;
   WindowFields fields;
-  Vector3 initial_superficial;
+  VectorValue initial_superficial;
+  std::vector<double> voidage;  ///< at the end of an inner step
+  FluidState between;           ///< of inner steps; sized when a window first needs them
+  WindowMeans means;            ///< of the window in hand; sized with it
   FluidState committed;
   FluidState candidate;
   FluidReport report;
@@ -95,6 +103,53 @@ void VansSolver::Impl::warn_once() {
   }
 }
 
+/// One step of the fluid: pre-pass, predictor, correctors.
+void VansSolver::Impl::advance_step(const FluidState& from, const Window& window,
+                                    const SolidsInput& solids, const Progress& progress,
+                                    FluidState& to) {
+  const Step step{problem, from, window, solids};
+  const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
+  open_step(step, time, fields);
+  pre_correct(step, fields, report);
+  if (progress) progress();
+  predict(step, fields, report);
+  for (int corrector = 1; corrector <= problem.numerics.correctors; ++corrector) {
+    correct(step, corrector == problem.numerics.correctors, fields, report);
+    if (progress) progress();
+  }
+  std::ranges::copy(solids.voidage, to.voidage.begin());
+  std::ranges::copy(fields.mass_flux, to.face_flux.begin());
+  std::ranges::copy(fields.velocity, to.velocity.begin());
+  std::ranges::copy(fields.closing_gradient, to.pressure_gradient.begin());
+  for (int cell = 0; cell < problem.stencil.cells; ++cell)
+    to.pressure[cell] = fields.pressure[cell] + problem.conditions.level;
+  to.step = window.length;
+  if (problem.numerics.time == TimeScheme::bdf2) keep_level(from, time, to);
+  ++report.inner_steps;
+  report.second_order_steps += time.two_steps() ? 1 : 0;
+  check_finite(problem.stencil, to, window.step);
+}
+
+/// The window's mean flux balances what the voidage changed by, to the last digit.
+void VansSolver::Impl::finish_window(const Window& window, int inner_steps) {
+  if (inner_steps == 1) candidate.means = {};
+  if (inner_steps == 1 && problem.numerics.time == TimeScheme::euler) return;
+  if (inner_steps == 1) candidate.means.face_flux = candidate.before.passed;
+  if (problem.continuity == Continuity::legacy) return;
+  const Stencil& s = problem.stencil;
+  for (int cell = 0; cell < s.cells; ++cell) {
+    fields.storage[cell] = problem.fluid.density * s.volume[cell] *
+                           (candidate.voidage[cell] - committed.voidage[cell]) / window.length;
+  }
+  for (int b = 0; b < s.boundary_faces(); ++b) {
+    fields.boundary.flux[b] =
+        candidate.means.face_flux[b + s.internal_faces] / problem.fluid.density;
+  }
+  settle_closed_regions(s, problem.regions, fields.boundary.flux, problem.fluid.density,
+                        window.length, window.step, fields.storage);
+  close_fluxes(fields.tree, s, fields.storage, candidate.means.face_flux);
+}
+
 VansSolver::VansSolver(const Scene& scene, const Mesh& mesh) {
   check_settings(scene);
   impl_ = std::make_unique<Impl>(scene, mesh);
@@ -106,23 +161,27 @@ void VansSolver::start(std::span<const double> voidage) {
   Impl& self = *impl_;
   const Stencil& s = self.problem.stencil;
   check_voidage(s, voidage, 0);
-  update_boundary_values(s, self.problem.conditions, voidage, self.fields.boundary);
+  update_boundary_values(s, self.problem.conditions, voidage, 0, self.fields.boundary);
   FluidState& state = self.committed;
   state.voidage.assign(voidage.begin(), voidage.end());
   std::vector<double> flux(static_cast<std::size_t>(s.faces));
   for (int f = 0; f < s.faces; ++f) {
     const bool given = f >= s.internal_faces &&
                        self.problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure;
+    const Vector3 at = s.centre[s.owner[f]] + s.from_owner[f];
     flux[f] = given ? self.fields.boundary.flux[f - s.internal_faces]
-                    : self.initial_superficial.dot(s.area[f]);
+                    : self.initial_superficial(at, 0).dot(s.area[f]);
   }
   balance_outlets(self.problem, flux);
   for (int f = 0; f < s.faces; ++f) state.face_flux[f] = self.problem.fluid.density * flux[f];
   for (int cell = 0; cell < s.cells; ++cell) {
-    state.velocity[cell] = self.initial_superficial / voidage[cell];
+    state.velocity[cell] = self.initial_superficial(s.centre[cell], 0) / voidage[cell];
     state.pressure[cell] = self.problem.conditions.level;
     state.pressure_gradient[cell] = Vector3::Zero();
   }
+  state.step = 0;
+  state.before = {};
+  state.means = {};
   self.has_candidate = false;
 }
 
@@ -130,28 +189,31 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
                          const Progress& progress) {
   Impl& self = *impl_;
   const FluidProblem& problem = self.problem;
-  WindowFields& fields = self.fields;
   self.has_candidate = false;
   check_window(problem.stencil, window, solids);
   self.report = {};
-  open_window(problem, self.committed, window, solids, fields);
-  pre_correct(problem, self.committed, window, solids.voidage, fields, self.report);
-  if (progress) progress();
-  predict(problem, solids.voidage, fields, self.report);
-  for (int corrector = 1; corrector <= problem.numerics.correctors; ++corrector) {
-    const bool last = corrector == problem.numerics.correctors;
-    correct(problem, self.committed, window, solids.voidage, last, fields, self.report);
-    if (progress) progress();
+  update_boundary_values(problem.stencil, problem.conditions, solids.voidage, window.end(),
+                         self.fields.boundary);
+  const double courant =
+      courant_number(problem, self.committed, self.fields.boundary, solids.voidage, window.length);
+  const int count = count_inner_steps(courant, problem.numerics.courant_limit, window);
+  if (count > 1 && self.between.voidage.empty()) resize(self.between, problem.stencil);
+  const FluidState* from = &self.committed;
+  for (int number = 1; number <= count; ++number) {
+    const bool last = number == count;
+    if (!last) {
+      interpolate_voidage(self.committed.voidage, solids.voidage, number, count, self.voidage);
+    }
+    const SolidsInput at_end{last ? solids.voidage : std::span<const double>(self.voidage),
+                             solids.drag_coefficient, solids.drag_source};
+    FluidState& to = from == &self.candidate ? self.between : self.candidate;
+    self.advance_step(*from, inner_window(window, number, count), at_end, progress, to);
+    if (count > 1) add_to_means(to, number, count, self.means);
+    from = &to;
   }
-  FluidState& next = self.candidate;
-  std::ranges::copy(solids.voidage, next.voidage.begin());
-  std::ranges::copy(fields.mass_flux, next.face_flux.begin());
-  std::ranges::copy(fields.velocity, next.velocity.begin());
-  std::ranges::copy(fields.closing_gradient, next.pressure_gradient.begin());
-  for (int cell = 0; cell < problem.stencil.cells; ++cell) {
-    next.pressure[cell] = fields.pressure[cell] + problem.conditions.level;
-  }
-  check_finite(problem.stencil, next, window.step);
+  if (from == &self.between) std::swap(self.between, self.candidate);
+  if (count > 1) std::swap(self.means, self.candidate.means);
+  self.finish_window(window, count);
   self.has_candidate = true;
   self.warn_once();
 }
@@ -164,6 +226,19 @@ void VansSolver::commit() {
 }
 
 void VansSolver::rollback() { impl_->has_candidate = false; }
+
+std::span<const double> window_flux(const FluidState& state) {
+  return state.means.face_flux.empty() ? state.face_flux : state.means.face_flux;
+}
+
+std::span<const Vector3> window_velocity(const FluidState& state) {
+  return state.means.velocity.empty() ? state.velocity : state.means.velocity;
+}
+
+std::span<const Vector3> window_pressure_gradient(const FluidState& state) {
+  return state.means.pressure_gradient.empty() ? state.pressure_gradient
+                                               : state.means.pressure_gradient;
+}
 
 const FluidState& VansSolver::committed() const { return impl_->committed; }
 const FluidState& VansSolver::candidate() const { return impl_->candidate; }

@@ -19,17 +19,45 @@ struct SolidsInput {
   std::span<const Vector3> drag_source;  ///< S [N]
 };
 
-/// The fluid at one time level.
+/// What a second-order step needs of the level before the last one.
+struct LevelBefore {
+  std::vector<double> voidage;
+  std::vector<double> face_flux;  ///< Φ [kg/s]
+  std::vector<Vector3> velocity;
+  std::vector<double> passed;  ///< F [kg/s]: mass that passed in the last step, over its length
+};
+
+/// Means over a window where they differ from the values at its end: with inner steps, and the flux
+/// in a second-order step. Empty otherwise.
+struct WindowMeans {
+  std::vector<double> face_flux;
+  std::vector<Vector3> velocity;
+  std::vector<Vector3> pressure_gradient;
+};
+
+/// The fluid at the end of a window.
 struct FluidState {
   std::vector<double> voidage;    ///< ε the state was solved with, bit for bit as received
   std::vector<double> face_flux;  ///< Φ [kg/s], superficial, out of the owner
   std::vector<Vector3> velocity;  ///< u [m/s], interstitial
   std::vector<double> pressure;   ///< p_d = p − ρ g·x [Pa]
   std::vector<Vector3> pressure_gradient;  ///< [Pa/m] that closes the cell's momentum balance
+  double step = 0;                         ///< [s] length of the step that led here; 0 at the start
+  LevelBefore before;                      ///< empty with `time: euler`
+  WindowMeans means;
 };
+
+/// What the other side and the audit see of a window: mass that passed through each face over the
+/// window's length [kg/s], the velocity [m/s] on which drag acted, and the pressure gradient
+/// [Pa/m].
+std::span<const double> window_flux(const FluidState& state);
+std::span<const Vector3> window_velocity(const FluidState& state);
+std::span<const Vector3> window_pressure_gradient(const FluidState& state);
 
 /// How the last window went.
 struct FluidReport {
+  int inner_steps = 0;
+  int second_order_steps = 0;    ///< of these, with `time: bdf2`
   int iterations = 0;            ///< of the pressure solver, all correctors
   int predictor_iterations = 0;  ///< of the momentum predictor
   int legacy_iterations = 0;     ///< passes over the lagged mass source (continuity: legacy)

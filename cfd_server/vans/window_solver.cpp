@@ -14,14 +14,23 @@ namespace {
 std::vector<SlipFace> slip_faces(const Stencil& s, const BoundaryConditions& conditions) {
   std::vector<SlipFace> faces;
   for (int f = s.internal_faces; f < s.faces; ++f) {
-    if (conditions.kind[f - s.internal_faces] != FaceKind::free_slip) continue;
-    faces.push_back({f, s.owner[f], s.area[f] / s.area_size[f], 0.0});
+    if (conditions.kind[f - s.internal_faces] != FaceKind::slip) continue;
+    faces.push_back({f, s.owner[f], s.area[f] / s.area_size[f],
+                     1 - conditions.grip[f - s.internal_faces], 0.0});
   }
   return faces;
 }
 
+/// χ: the part of a cell's volume on which the fluid bears the pressure gradient.
+std::span<const double> pressure_share(const Step& step, const WindowFields& w) {
+  return step.problem.model == PressureModel::a ? step.solids.voidage : std::span(w.ones);
+}
+
 /// C(u), ε u and the gradients of the velocity in hand.
-void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage, WindowFields& w) {
+void evaluate_cells(const Step& step, WindowFields& w) {
+  const FluidProblem& problem = step.problem;
+  const auto voidage = step.solids.voidage;
+  const auto share = pressure_share(step, w);
   const Stencil& s = problem.stencil;
   boundary_jump(s, problem.conditions, w.boundary.velocity, w.velocity, w.jump);
   if (problem.numerics.convection != Convection::upwind || !s.orthogonal) {
@@ -32,7 +41,7 @@ void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage
   for (int cell = 0; cell < s.cells; ++cell) {
     w.superficial[cell] = voidage[cell] * w.velocity[cell];
     w.specific_force[cell] =
-        (w.force[cell] + w.momentum.source[cell]) / (voidage[cell] * s.volume[cell]);
+        (w.force[cell] + w.momentum.source[cell]) / (share[cell] * s.volume[cell]);
   }
   boundary_jump(s, problem.conditions, w.boundary.superficial, w.superficial, w.jump);
   gradient(s, problem.gradient, w.superficial, w.jump, w.superficial_gradient);
@@ -40,7 +49,7 @@ void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage
   for (std::size_t b = 0; b < w.pressure_jump.size(); ++b) {
     const bool given = problem.conditions.kind[b] == FaceKind::pressure;
     const int cell = s.owner[b + static_cast<std::size_t>(s.internal_faces)];
-    w.pressure_jump[b] = given ? problem.conditions.pressure[b] - w.pressure[cell] : 0.0;
+    w.pressure_jump[b] = given ? w.boundary.pressure[b] - w.pressure[cell] : 0.0;
   }
   gradient(s, problem.pressure_gradient, w.pressure, w.pressure_jump, w.pressure_slope);
 }
@@ -48,12 +57,11 @@ void evaluate_cells(const FluidProblem& problem, std::span<const double> voidage
 /// Pressure for the source in hand, and the flux that it drives.
 void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
-  assemble_pressure_rhs(s, problem.conditions, w.faces, w.face_scale, w.source, w.explicit_part,
-                        w.rhs);
+  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
   std::ranges::copy(w.explicit_part, w.flux.begin());
-  add_pressure_flux(s, problem.conditions, w.faces, w.pressure, w.flux);
+  add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
 }
 
 double largest(std::span<const double> values) {
@@ -63,17 +71,16 @@ double largest(std::span<const double> values) {
 }
 
 /// Repeat the pressure solve with the mass source of the fluxes before until they settle.
-void solve_legacy_continuity(const FluidProblem& problem, const FluidState& old_state,
-                             const Window& window, std::span<const double> voidage, WindowFields& w,
-                             FluidReport& report) {
+void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& report) {
+  const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   double change = 0;
   for (int pass = 0; pass < problem.numerics.legacy.iterations; ++pass) {
     for (int f = 0; f < s.faces; ++f) w.interstitial_flux[f] = w.flux[f] * w.face_scale[f];
     reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient,
                 w.interstitial);
-    legacy_source(s, old_state.voidage, voidage, w.voidage_gradient, w.interstitial, window.length,
-                  w.source);
+    legacy_source(s, step.old_state.voidage, step.solids.voidage, w.voidage_gradient,
+                  w.interstitial, step.window.length, w.source);
     std::ranges::copy(w.flux, w.flux_before.begin());
     solve_continuity(problem, w, report);
     ++report.legacy_iterations;
@@ -86,15 +93,15 @@ void solve_legacy_continuity(const FluidProblem& problem, const FluidState& old_
 }
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
-void close(const FluidProblem& problem, const Window& window, WindowFields& w,
-           FluidReport& report) {
+void close(const Step& step, WindowFields& w, FluidReport& report) {
+  const FluidProblem& problem = step.problem;
   for (std::size_t f = 0; f < w.flux.size(); ++f)
     w.mass_flux[f] = problem.fluid.density * w.flux[f];
   if (problem.continuity == Continuity::legacy) return;
   const double correction = close_fluxes(w.tree, problem.stencil, w.storage, w.mass_flux);
   // In a fluid at rest all fluxes are rounding, and so is their correction: no error of the solver.
   const double rounding =
-      1e-13 * problem.fluid.density * largest(problem.stencil.volume) / window.length;
+      1e-13 * problem.fluid.density * largest(problem.stencil.volume) / step.window.length;
   report.closure_correction = correction > rounding ? correction / largest(w.mass_flux) : 0.0;
   for (std::size_t f = 0; f < w.flux.size(); ++f)
     w.flux[f] = w.mass_flux[f] / problem.fluid.density;
@@ -105,11 +112,12 @@ void close(const FluidProblem& problem, const Window& window, WindowFields& w,
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
   problem.stencil = make_stencil(mesh);
-  problem.conditions = read_boundaries(scene, mesh);
+  problem.conditions = read_boundaries(scene, mesh, problem.stencil);
   problem.regions = find_regions(problem.stencil, problem.conditions);
   problem.fluid = {scene.fluid.density, scene.fluid.viscosity, scene.fluid.numerics.convection};
   problem.numerics = scene.fluid.numerics;
   problem.continuity = scene.coupling.continuity;
+  problem.model = scene.interphase.model;
   problem.gradient =
       gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false));
   problem.reconstruction = reconstruction_coefficients(problem.stencil);
@@ -152,6 +160,8 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
                        &specific_force, &closing_gradient, &voidage_gradient, &interstitial}) {
     values->assign(cell_count, Vector3::Zero());
   }
+  if (problem.numerics.time == TimeScheme::bdf2) convecting.assign(face_count, 0.0);
+  if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
   if (!s.orthogonal) pressure_slope.assign(cell_count, Vector3::Zero());
   velocity_gradient.assign(cell_count, Matrix3::Zero());
   superficial_gradient.assign(cell_count, Matrix3::Zero());
@@ -159,74 +169,90 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   pressure_jump.assign(boundary_count, 0.0);
 }
 
-void open_window(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                 const SolidsInput& solids, WindowFields& w) {
+void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w) {
+  const FluidProblem& problem = step.problem;
+  const FluidState& old_state = step.old_state;
+  const auto voidage = step.solids.voidage;
   const Stencil& s = problem.stencil;
   const double density = problem.fluid.density;
-  update_boundary_values(s, problem.conditions, solids.voidage, w.boundary);
+  w.time = time;
+  update_boundary_values(s, problem.conditions, voidage, step.window.end(), w.boundary);
   for (int cell = 0; cell < s.cells; ++cell) {
-    w.storage[cell] =
-        density * s.volume[cell] * (solids.voidage[cell] - old_state.voidage[cell]) / window.length;
+    double change = time.now * (voidage[cell] - old_state.voidage[cell]);
+    if (time.two_steps())
+      change -= time.before * (old_state.voidage[cell] - old_state.before.voidage[cell]);
+    w.storage[cell] = density * s.volume[cell] * change / time.step;
     w.old_superficial[cell] = old_state.voidage[cell] * old_state.velocity[cell];
     w.pressure[cell] = old_state.pressure[cell] - problem.conditions.level;
   }
   for (int f = 0; f < s.faces; ++f) w.old_flux[f] = old_state.face_flux[f] / density;
   if (problem.continuity == Continuity::conservative) {
-    settle_closed_regions(s, problem.regions, w.boundary.flux, density, window.length, window.step,
-                          w.storage);
+    settle_closed_regions(s, problem.regions, w.boundary.flux, density, step.window.length,
+                          step.window.step, w.storage);
     for (int cell = 0; cell < s.cells; ++cell) w.source[cell] = -w.storage[cell] / density;
   } else {
-    legacy_face_voidage(s, solids.voidage, w.face_voidage);
+    legacy_face_voidage(s, voidage, w.face_voidage);
     legacy_voidage_gradient(s, w.face_voidage, w.voidage_gradient);
     for (int f = 0; f < s.faces; ++f) w.face_scale[f] = 1 / w.face_voidage[f];
   }
-  assemble_momentum(s, problem.conditions, problem.fluid, old_state, solids, window.length,
-                    w.momentum);
-  assemble_faces(s, problem.conditions, w.momentum, solids.voidage, w.old_flux, density,
-                 window.length, w.faces);
+  std::span<const double> convecting = old_state.face_flux;
+  if (time.two_steps()) {
+    for (int f = 0; f < s.faces; ++f) {
+      w.convecting[f] = extrapolated(time, old_state.face_flux[f], old_state.before.face_flux[f]);
+    }
+    convecting = w.convecting;
+  }
+  assemble_momentum(s, problem.conditions, problem.fluid, old_state, step.solids, time, convecting,
+                    {}, w.momentum);
+  assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w), old_state,
+                 time, w.faces);
   assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
   w.pressure_solver->setup(w.matrix);
 }
 
-void correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-             std::span<const double> voidage, bool last, WindowFields& w, FluidReport& report) {
+void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) {
+  const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
-  evaluate_cells(problem, voidage, w);
+  evaluate_cells(step, w);
   explicit_flux(s, problem.conditions, w.boundary, w.faces,
                 {w.specific_force, w.superficial, w.superficial_gradient, w.flux, w.pressure_slope},
                 w.explicit_part);
   if (problem.continuity == Continuity::conservative) {
     solve_continuity(problem, w, report);
   } else {
-    solve_legacy_continuity(problem, old_state, window, voidage, w, report);
+    solve_legacy_continuity(step, w, report);
   }
-  if (last) close(problem, window, w, report);
+  if (last) close(step, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
-  for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= voidage[cell];
-  close_momentum(s, w.momentum, voidage, w.force, w.velocity_before, w.velocity,
+  for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
+  close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
 }
 
-void pre_correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                 std::span<const double> voidage, WindowFields& w, FluidReport& report) {
-  const Stencil& s = problem.stencil;
-  for (int cell = 0; cell < s.cells; ++cell)
-    w.velocity[cell] = w.old_superficial[cell] / voidage[cell];
+void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
+  const LevelBefore& before = step.old_state.before;
+  for (int cell = 0; cell < step.problem.stencil.cells; ++cell) {
+    Vector3 start = w.old_superficial[cell];
+    if (w.time.two_steps()) {
+      start = extrapolated(w.time, start, Vector3(before.voidage[cell] * before.velocity[cell]));
+    }
+    w.velocity[cell] = start / step.solids.voidage[cell];
+  }
   std::ranges::copy(w.old_flux, w.flux.begin());
-  correct(problem, old_state, window, voidage, false, w, report);
+  correct(step, false, w, report);
 }
 
-void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& w,
-             FluidReport& report) {
-  const Stencil& s = problem.stencil;
+void predict(const Step& step, WindowFields& w, FluidReport& report) {
+  const Stencil& s = step.problem.stencil;
   // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred
   // parts included.
   std::swap(w.velocity, w.velocity_before);
-  report.predictor_iterations += predict_velocity(s, w.momentum, voidage, w.force,
+  report.predictor_iterations += predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
                                                   w.closing_gradient, w.predictor, w.velocity);
   if (rebuilt_share(s) == 1) return;
-  for (int cell = 0; cell < s.cells; ++cell) w.superficial[cell] = voidage[cell] * w.velocity[cell];
+  for (int cell = 0; cell < s.cells; ++cell)
+    w.superficial[cell] = step.solids.voidage[cell] * w.velocity[cell];
   predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);
 }
 

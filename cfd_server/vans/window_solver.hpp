@@ -1,4 +1,5 @@
-// One window of the fluid, piece by piece: what `VansSolver::advance` puts in order.
+// One step of the fluid, piece by piece: what `VansSolver::advance` puts in order. A step is a
+// window or, where the Courant number asks for it, a part of one.
 //
 // Plain arrays, sized once; the functions fill them from left to right: coefficients -> pre-pass ->
 // predictor -> correctors -> closed fluxes.
@@ -23,6 +24,7 @@ struct FluidProblem {
   FluidProperties fluid;
   FluidNumerics numerics;
   Continuity continuity = Continuity::conservative;
+  PressureModel model = PressureModel::a;
   std::vector<Vector3> gradient;           ///< least-squares coefficients of velocities, one a side
   std::vector<Vector3> pressure_gradient;  ///< of the pressure; empty on orthogonal meshes
   std::vector<Vector3> reconstruction;     ///< one a side
@@ -30,10 +32,11 @@ struct FluidProblem {
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh);
 
-/// Fields and coefficients of the window in hand. One entry a cell unless stated.
+/// Fields and coefficients of the step in hand. One entry a cell unless stated.
 struct WindowFields {
   explicit WindowFields(const FluidProblem& problem, const Mesh& mesh);
 
+  TimeCoefficients time;
   BoundaryValues boundary;
   MomentumCoefficients momentum;
   FaceCoefficients faces;
@@ -42,10 +45,12 @@ struct WindowFields {
   MomentumSolver predictor;
   std::unique_ptr<PressureSolver> pressure_solver;
 
-  std::vector<double> storage;        ///< ρ V Δε/Δt [kg/s]
-  std::vector<double> source;         ///< right-hand side of continuity [m³/s]
-  std::vector<double> old_flux;       ///< φ^n [m³/s], one a face
-  std::vector<double> flux;           ///< φ of the last corrector [m³/s], one a face
+  std::vector<double> storage;     ///< ρ V dε/dt [kg/s]
+  std::vector<double> source;      ///< right-hand side of continuity [m³/s]
+  std::vector<double> old_flux;    ///< φ^n [m³/s], one a face
+  std::vector<double> convecting;  ///< Φ [kg/s] at the step's end, extrapolated; time: bdf2 only
+  std::vector<double> ones;        ///< χ of pressure model b; empty with model a
+  std::vector<double> flux;        ///< φ of the last corrector [m³/s], one a face
   std::vector<double> explicit_part;  ///< [m³/s], one a face
   std::vector<double> mass_flux;      ///< Φ [kg/s], one a face
   std::vector<double> pressure;       ///< p − level [Pa]
@@ -55,7 +60,7 @@ struct WindowFields {
   std::vector<Vector3> velocity;          ///< u of the last corrector
   std::vector<Vector3> velocity_before;   ///< u from which it started
   std::vector<Vector3> force;             ///< C(velocity_before) [N]
-  std::vector<Vector3> specific_force;    ///< (C + S)/(ε V) [N/m³]
+  std::vector<Vector3> specific_force;    ///< (C + S)/(χ V) [N/m³]
   std::vector<Vector3> closing_gradient;  ///< ∇p that closes each cell's momentum [Pa/m]
   std::vector<Vector3> pressure_slope;    ///< least-squares ∇p [Pa/m], non-orthogonal meshes only
   std::vector<Matrix3> velocity_gradient;
@@ -72,23 +77,28 @@ struct WindowFields {
   std::vector<Vector3> interstitial;  ///< u rebuilt from Λ
 };
 
-/// Everything that stays the same in all correctors of a window.
-void open_window(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                 const SolidsInput& solids, WindowFields& fields);
+/// One step: from the old state over `window`, with the solids at its end.
+struct Step {
+  const FluidProblem& problem;
+  const FluidState& old_state;
+  const Window& window;
+  const SolidsInput& solids;
+};
+
+/// Everything that stays the same in all correctors of a step. `time` says how the old levels
+/// enter.
+void open_step(const Step& step, const TimeCoefficients& time, WindowFields& fields);
 
 /// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With
 /// `last` the fluxes are closed before the velocity is rebuilt from them.
-void correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-             std::span<const double> voidage, bool last, WindowFields& fields, FluidReport& report);
+void correct(const Step& step, bool last, WindowFields& fields, FluidReport& report);
 
 /// Before the predictor: start from ε^n u^n/ε^{n+1} and find the pressure that goes with the new
 /// voidage and drag. A cell that leaves the bed would otherwise keep the bed's gradient without its
 /// drag, and shoot up.
-void pre_correct(const FluidProblem& problem, const FluidState& old_state, const Window& window,
-                 std::span<const double> voidage, WindowFields& fields, FluidReport& report);
+void pre_correct(const Step& step, WindowFields& fields, FluidReport& report);
 
 /// Implicit momentum with the gradient in hand.
-void predict(const FluidProblem& problem, std::span<const double> voidage, WindowFields& fields,
-             FluidReport& report);
+void predict(const Step& step, WindowFields& fields, FluidReport& report);
 
 }  // namespace fluxpact

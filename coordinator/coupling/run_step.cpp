@@ -59,6 +59,7 @@ AuditRow audit(const Coupling& coupling, const Window& window, const CommittedSt
       coupling.mesh,
       {.length = window.length,
        .pressure_gradient_force =
+           coupling.scene.interphase.model == PressureModel::a &&
            std::ranges::find(forces, InterphaseForce::pressure_gradient) != forces.end(),
        .voidage = voidage,
        .drag_coefficient = particles.scalars(field::drag_coefficient, cells),

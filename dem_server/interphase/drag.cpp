@@ -47,20 +47,28 @@ double stokes_drag(const DragPoint& point, const FluidProperties& fluid) {
   return 3 * std::numbers::pi * fluid.viscosity * point.diameter;
 }
 
-void drag_coefficients(DragLaw law, const FluidProperties& fluid, std::span<const DragPoint> points,
-                       int threads, std::span<double> coefficients) {
+void drag_coefficients(DragLaw law, PressureModel model, const FluidProperties& fluid,
+                       std::span<const DragPoint> points, int threads,
+                       std::span<double> coefficients) {
   switch (law) {
     case DragLaw::none:
-      return for_all<no_drag>(fluid, points, threads, coefficients);
+      for_all<no_drag>(fluid, points, threads, coefficients);
+      break;
     case DragLaw::gidaspow:
-      return for_all<gidaspow_drag>(fluid, points, threads, coefficients);
+      for_all<gidaspow_drag>(fluid, points, threads, coefficients);
+      break;
     case DragLaw::ergun:
-      return for_all<ergun_drag>(fluid, points, threads, coefficients);
+      for_all<ergun_drag>(fluid, points, threads, coefficients);
+      break;
     case DragLaw::wen_yu:
-      return for_all<wen_yu_drag>(fluid, points, threads, coefficients);
+      for_all<wen_yu_drag>(fluid, points, threads, coefficients);
+      break;
     case DragLaw::stokes:
-      return for_all<stokes_drag>(fluid, points, threads, coefficients);
+      for_all<stokes_drag>(fluid, points, threads, coefficients);
+      break;
   }
+  if (model == PressureModel::a) return;
+  for (std::size_t i = 0; i < points.size(); ++i) coefficients[i] /= points[i].voidage;
 }
 
 }  // namespace fluxpact

@@ -4,6 +4,8 @@
 // The laws are written for the momentum exchange β [kg/(m³ s)] per volume of bed; with pressure and
 // stress shared between the phases (model A), n = (1 − ε)/V_p spheres per volume share it equally:
 //   ζ = V_p β/(1 − ε).
+// Where the fluid alone bears the pressure gradient (model B) the same bed needs ζ/ε (Gidaspow
+// 1994).
 #pragma once
 
 #include <span>
@@ -42,7 +44,8 @@ double gidaspow_drag(const DragPoint& point, const FluidProperties& fluid);
 double stokes_drag(const DragPoint& point, const FluidProperties& fluid);
 
 /// ζ [kg/s] of all spheres, row by row; the law is chosen once, outside the loop.
-void drag_coefficients(DragLaw law, const FluidProperties& fluid, std::span<const DragPoint> points,
-                       int threads, std::span<double> coefficients);
+void drag_coefficients(DragLaw law, PressureModel model, const FluidProperties& fluid,
+                       std::span<const DragPoint> points, int threads,
+                       std::span<double> coefficients);
 
 }  // namespace fluxpact

@@ -25,8 +25,9 @@ Vector3 predicted_velocity(const ExchangeSettings& settings, const Prediction& p
   const Vector3& velocity = particles.velocity[i];
   if (!settings.mobile) return velocity;
   Vector3 coming = settings.gravity;
-  if (settings.pressure_gradient) {
-    coming -= (gradient + settings.fluid.density * settings.gravity) / particles.density[i];
+  if (settings.pressure_gradient) coming -= gradient / particles.density[i];
+  if (settings.buoyancy) {
+    coming -= settings.fluid.density * settings.gravity / particles.density[i];
   }
   if (!(past.length > 0)) return velocity + window * coming;
   const Vector3 load = settings.gravity + past.forces->force[i] / bulk.mass[i];
@@ -42,9 +43,11 @@ ExchangeSettings exchange_settings(const Scene& scene, bool mobile) {
   settings.fluid = {scene.fluid.density, scene.fluid.viscosity};
   settings.gravity = scene.scene.gravity;
   settings.law = scene.interphase.drag;
-  settings.pressure_gradient =
+  settings.model = scene.interphase.model;
+  settings.buoyancy =
       std::ranges::find(scene.interphase.forces, InterphaseForce::pressure_gradient) !=
       scene.interphase.forces.end();
+  settings.pressure_gradient = settings.buoyancy && settings.model == PressureModel::a;
   settings.mobile = mobile;
   const int threads = scene.particles.numerics.threads;
   settings.threads = threads > 0 ? threads : omp_get_max_threads();
@@ -79,7 +82,7 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
     forces.drag_impulse[i] = drag;
     forces.impulse[i] = drag + length * pressure;
     forces.force[i] = drag / length + pressure;
-    if (settings.pressure_gradient) {
+    if (settings.buoyancy) {
       forces.force[i] -= settings.fluid.density * bulk.volume[i] * settings.gravity;
     }
     if (!forces.force[i].allFinite()) bad = std::min(bad, i);
@@ -108,7 +111,8 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
     points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
                   (u - particles.velocity[i]).norm()};
   }
-  drag_coefficients(settings.law, settings.fluid, points_, settings.threads, offer.coefficient);
+  drag_coefficients(settings.law, settings.model, settings.fluid, points_, settings.threads,
+                    offer.coefficient);
 #pragma omp parallel for schedule(static) num_threads(settings.threads)
   for (int i = 0; i < count; ++i) {
     const Vector3 gradient =

@@ -26,7 +26,9 @@ struct ExchangeSettings {
   FluidProperties fluid;
   Vector3 gravity{0, 0, 0};  ///< [m/s²]
   DragLaw law = DragLaw::none;
-  bool pressure_gradient = true;  ///< −V_p ∇p acts on the particles, hydrostatic part included
+  PressureModel model = PressureModel::a;
+  bool pressure_gradient = true;  ///< −V_p ∇p_d acts on the particles (pressure model a)
+  bool buoyancy = true;           ///< −ρ V_p g, the hydrostatic part of it (both models)
   bool mobile = true;             ///< false: particles count as infinitely heavy (b = 0)
   int threads = 1;
 };

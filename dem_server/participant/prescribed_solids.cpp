@@ -100,7 +100,7 @@ void PrescribedSolids::evaluate(double time, std::int64_t step, std::span<const 
     candidate_.voidage[cell] = voidage;
     points_[cell] = {voidage, diameter_, velocity[cell].norm()};
   }
-  drag_coefficients(settings_.law, settings_.fluid, points_, settings_.threads,
+  drag_coefficients(settings_.law, settings_.model, settings_.fluid, points_, settings_.threads,
                     candidate_.drag_coefficient);
   // From one sphere to the (1 − ε) V/V_p of them in the cell.
   const double sphere = ball_volume(diameter_ / 2);

@@ -277,6 +277,16 @@ void check_interphase(const Scene& scene, Findings& findings) {
   }
 }
 
+void check_numerics(const Scene& scene, Findings& findings) {
+  if (is_sound(findings, {"fluid.numerics.time", "coupling.continuity"}) &&
+      scene.fluid.numerics.time == TimeScheme::bdf2 &&
+      scene.coupling.continuity == Continuity::legacy) {
+    findings.add("fluid.numerics.time",
+                 "`bdf2` has no meaning with coupling.continuity: legacy, whose mass source is of "
+                 "first order; use `euler`");
+  }
+}
+
 void check_launch(const Scene& scene, Findings& findings) {
   const LaunchSettings& launch = scene.launch;
   if (launch.mode == LaunchMode::external && launch.listen.empty() &&
@@ -319,6 +329,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_pairs(scene, findings);
   check_insertion(scene, findings);
   check_interphase(scene, findings);
+  check_numerics(scene, findings);
   check_launch(scene, findings);
 }
 

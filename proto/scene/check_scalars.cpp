@@ -1,21 +1,11 @@
 // What must fit together in fluid.scalars and fluid.turbulence.
 #include <algorithm>
 
-#include "proto/base/expression.hpp"
 #include "proto/scene/check.hpp"
 #include "proto/scene/names.hpp"
 
 namespace fluxpact {
 namespace {
-
-void check_formula(const std::string& path, const std::string& formula, Findings& findings) {
-  if (formula.empty() || !findings.sound(path)) return;
-  try {
-    const Expression compiled(formula);
-  } catch (const ConfigError& error) {
-    findings.add(path, error.what());
-  }
-}
 
 std::vector<std::string> patch_names(const Scene& scene) {
   std::vector<std::string> names;
@@ -39,13 +29,11 @@ const BoundarySettings* condition(const Scene& scene, const std::string& name,
 void check_scalar_boundary(const Scene& scene, const std::string& scalar, const std::string& patch,
                            const ScalarBoundarySettings& entry, Findings& findings) {
   const std::string path = fmt::format("fluid.scalars.{}.boundaries.{}", scalar, patch);
-  check_formula(path + ".value", entry.value, findings);
-  check_formula(path + ".flux", entry.flux, findings);
   if (!findings.sound(path)) return;
-  if (!entry.value.empty() && !entry.flux.empty())
+  if (entry.value && entry.flux)
     findings.add(path, "`value` and `flux` are both given; at most one can hold, keep it");
   const BoundarySettings* const fluid = condition(scene, patch, path, findings);
-  if (fluid != nullptr && !entry.flux.empty() && fluid->type != BoundaryType::wall) {
+  if (fluid != nullptr && entry.flux && fluid->type != BoundaryType::wall) {
     findings.add(path + ".flux",
                  fmt::format("has a meaning on walls only, `{}` is of type {}; give `value`", patch,
                              name_of(fluid->type)));
@@ -82,9 +70,6 @@ void check_turbulence(const Scene& scene, Findings& findings) {
 void check_scalars(const Scene& scene, Findings& findings) {
   if (!findings.sound("fluid.boundaries")) return;
   for (const auto& [name, scalar] : scene.fluid.scalars) {
-    const std::string path = "fluid.scalars." + name;
-    check_formula(path + ".initial", scalar.initial, findings);
-    check_formula(path + ".source", scalar.source, findings);
     for (const auto& [patch, entry] : scalar.boundaries)
       check_scalar_boundary(scene, name, patch, entry, findings);
   }

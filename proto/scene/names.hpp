@@ -71,6 +71,24 @@ template <>
 inline constexpr auto enum_names<Slip> = std::to_array<Named<Slip>>({
     {Slip::none, "none"},
     {Slip::free, "free"},
+    {Slip::partial, "partial"},
+});
+template <>
+inline constexpr auto enum_names<Along> = std::to_array<Named<Along>>({
+    {Along::time, "time"},
+    {Along::x, "x"},
+    {Along::y, "y"},
+    {Along::z, "z"},
+});
+template <>
+inline constexpr auto enum_names<TimeScheme> = std::to_array<Named<TimeScheme>>({
+    {TimeScheme::euler, "euler"},
+    {TimeScheme::bdf2, "bdf2"},
+});
+template <>
+inline constexpr auto enum_names<PressureModel> = std::to_array<Named<PressureModel>>({
+    {PressureModel::a, "a"},
+    {PressureModel::b, "b"},
 });
 template <>
 inline constexpr auto enum_names<Convection> = std::to_array<Named<Convection>>({

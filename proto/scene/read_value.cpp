@@ -1,5 +1,8 @@
 #include "proto/scene/read_value.hpp"
 
+#include "proto/base/errors.hpp"
+#include "proto/base/expression.hpp"
+
 namespace fluxpact {
 namespace {
 
@@ -129,6 +132,61 @@ void read_value(const Spot& spot, Vector3& value) {
   std::array<double, 3> components{};
   if (read_fixed_list(spot, components, expectation<Vector3>(spot.key))) {
     value = Vector3(components[0], components[1], components[2]);
+  }
+}
+
+void read_value(const Spot& spot, Formula& value) {
+  const TreeNode& node = spot.node;
+  if (node.kind != TreeNode::Kind::scalar || node.text.empty()) {
+    if (node.kind != TreeNode::Kind::refused) {
+      spot.refuse(
+          fmt::format("{} where {} is expected", seen(node), expectation<Formula>(spot.key)));
+    }
+    return;
+  }
+  const Parsed<double> number = parse_number(node.text, spot.key.dimension);
+  if (!node.quoted && number.problem.empty()) {
+    double accepted = 0;
+    accept(spot, number, accepted);
+    value = Formula(accepted);
+    return;
+  }
+  try {
+    const Expression formula(node.text);
+    value.text = node.text;
+  } catch (const ConfigError& error) {
+    spot.refuse(fmt::format("`{}` is neither a number ({}) nor a formula: {}", shown(node.text),
+                            number.problem, error.what()));
+  }
+}
+
+void read_value(const Spot& spot, VectorFormula& value) {
+  std::array<Formula, 3> components;
+  if (read_fixed_list(spot, components, expectation<VectorFormula>(spot.key))) {
+    value.components = components;
+  }
+}
+
+/// The rows of a table: the first column ascends.
+void read_value(const Spot& spot, std::vector<std::array<double, 2>>& value) {
+  if (spot.node.kind != TreeNode::Kind::list || spot.node.children.empty()) {
+    if (spot.node.kind != TreeNode::Kind::refused) {
+      spot.refuse(fmt::format("{} where a list of pairs is expected, e.g. [[0, 0], [1, 2.5]]",
+                              seen(spot.node)));
+    }
+    return;
+  }
+  value.clear();
+  for (std::size_t i = 0; i < spot.node.children.size(); ++i) {
+    const std::string path = fmt::format("{}[{}]", spot.path, i);
+    const Spot row{spot.node.children[i], path, spot.key, spot.findings};
+    std::array<double, 2> pair{};
+    if (!read_fixed_list(row, pair, "a pair of numbers")) continue;
+    if (!value.empty() && !(pair[0] > value.back()[0])) {
+      row.refuse(fmt::format("{} does not lie above {} of the row before; rows ascend", pair[0],
+                             value.back()[0]));
+    }
+    value.push_back(pair);
   }
 }
 

@@ -38,6 +38,9 @@ void read_value(const Spot& spot, int& value);
 void read_value(const Spot& spot, std::string& value);
 void read_value(const Spot& spot, Vector3& value);
 void read_value(const Spot& spot, std::array<double, 2>& value);
+void read_value(const Spot& spot, std::vector<std::array<double, 2>>& value);
+void read_value(const Spot& spot, Formula& value);
+void read_value(const Spot& spot, VectorFormula& value);
 void read_value(const Spot& spot, std::array<int, 3>& value);
 void read_value(const Spot& spot, std::array<std::string, 2>& value);
 

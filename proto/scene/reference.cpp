@@ -10,6 +10,11 @@ std::string default_text(int value) { return fmt::format("{}", value); }
 std::string default_text(const Vector3& value) {
   return fmt::format("[{}, {}, {}]", value[0], value[1], value[2]);
 }
+std::string default_text(const Formula& value) { return default_text(value.number); }
+std::string default_text(const VectorFormula& value) {
+  const auto& [x, y, z] = value.components;
+  return fmt::format("[{}, {}, {}]", x.number, y.number, z.number);
+}
 template <class Enum>
 requires std::is_enum_v<Enum> std::string default_text(Enum value) {
   return std::string(name_of(value));

@@ -14,6 +14,26 @@
 
 namespace fluxpact {
 
+/// A number, or a formula in x, y, z [m] and t [s] (proto/base/expression.hpp).
+struct Formula {
+  double number = 0;
+  std::string text;  ///< empty: the number
+
+  Formula() = default;
+  Formula(double value) : number(value) {}  // NOLINT(google-explicit-constructor): a number is one
+  bool operator==(const Formula&) const = default;
+};
+
+/// A vector of formulas.
+struct VectorFormula {
+  std::array<Formula, 3> components;
+
+  VectorFormula() = default;
+  VectorFormula(const Vector3& value)  // NOLINT(google-explicit-constructor): a vector is one
+      : components{value.x(), value.y(), value.z()} {}
+  bool operator==(const VectorFormula&) const = default;
+};
+
 // ---- scene, coupling, output, launch ----
 
 struct SceneSettings {
@@ -89,23 +109,36 @@ struct MeshSettings {
 };
 
 enum class BoundaryType { velocity, mass_flow, pressure, wall };
-enum class Slip { none, free };
+enum class Slip { none, free, partial };
+enum class Along { time, x, y, z };
+
+/// A table that multiplies a boundary value: linear between its points, constant beyond its ends.
+struct ProfileSettings {
+  Along along = Along::time;
+  std::vector<std::array<double, 2>> points;  ///< [s or m, factor], the first column ascending
+};
 
 struct BoundarySettings {
   BoundaryType type = BoundaryType::wall;
-  std::optional<Vector3> superficial;  ///< [m/s] type velocity: volume flux per area of the patch
-  std::optional<Vector3>
+  std::optional<VectorFormula>
+      superficial;  ///< [m/s] type velocity: volume flux per area of the patch
+  std::optional<VectorFormula>
       interstitial;  ///< [m/s] type velocity: multiplied by the voidage of the adjacent cell
-  std::optional<double> rate;  ///< [kg/s] type mass_flow: into the domain, over the whole patch
-  double value = 0;            ///< [Pa] type pressure
-  Slip slip = Slip::none;      ///< type wall
+  std::optional<Formula> rate;  ///< [kg/s] type mass_flow: into the domain, over the whole patch
+  Formula value;                ///< [Pa] type pressure
+  std::vector<ProfileSettings> profile;
+  double ramp = 0;         ///< [s] over which the value grows from 0; 0: at once
+  Slip slip = Slip::none;  ///< type wall
+  double slip_length = 0;  ///< [m] slip: partial
+  VectorFormula velocity;  ///< [m/s] type wall, slip: none | partial: of the wall along itself
 };
 
 struct InitialSettings {
-  Vector3 superficial{0, 0, 0};  ///< [m/s]
+  VectorFormula superficial;  ///< [m/s] at t = 0
 };
 
 enum class Convection { upwind, linear_upwind, limited };
+enum class TimeScheme { euler, bdf2 };
 enum class FluidBackend { native };
 enum class LinearSolverChoice { automatic, multigrid, conjugate_gradient };
 
@@ -118,6 +151,8 @@ struct LegacySettings {
 
 struct FluidNumerics {
   Convection convection = Convection::limited;
+  TimeScheme time = TimeScheme::euler;
+  double courant_limit = 5;  ///< [-] largest of any cell in an inner step
   int correctors = 2;
   double pressure_tolerance = 1e-6;  ///< relative residual of the pressure equation [-]
   LinearSolverChoice solver = LinearSolverChoice::automatic;
@@ -136,11 +171,11 @@ struct ScalarBoundarySettings {
 /// A field that the fluid carries, c per mass of fluid.
 struct ScalarSettings {
   ScalarKind kind = ScalarKind::species;
-  double diffusivity = 0;     ///< [m²/s] species: molecular
-  double conductivity = 0;    ///< [W/(m K)] temperature: molecular
-  double heat_capacity = 0;   ///< [J/(kg K)] temperature
-  std::string initial = "0";  ///< formula in x, y, z
-  std::string source;         ///< formula in x, y, z, t: [kg/(m³ s)] or [W/m³] of fluid
+  double diffusivity = 0;         ///< [m²/s] species: molecular
+  double conductivity = 0;        ///< [W/(m K)] temperature: molecular
+  double heat_capacity = 0;       ///< [J/(kg K)] temperature
+  Formula initial;                ///< [c] at t = 0
+  std::optional<Formula> source;  ///< per volume of fluid: [kg/(m³ s)] or [W/m³]
   std::map<std::string, ScalarBoundarySettings> boundaries;
   Convection convection = Convection::limited;
   double tolerance = 1e-10;  ///< residual of the linear solver over that of the step's start [-]
@@ -232,6 +267,7 @@ struct ParticleSettings {
 enum class VoidageMap { exact, centroid, prescribed };
 enum class DragLaw { none, gidaspow, ergun, wen_yu, stokes };
 enum class InterphaseForce { pressure_gradient };
+enum class PressureModel { a, b };
 
 /// A solid phase given by a formula, at rest, without particles: for verification.
 struct PrescribedSettings {
@@ -240,6 +276,7 @@ struct PrescribedSettings {
 };
 
 struct InterphaseSettings {
+  PressureModel model = PressureModel::a;
   VoidageMap voidage = VoidageMap::exact;
   DragLaw drag = DragLaw::gidaspow;
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};

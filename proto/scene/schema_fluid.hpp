@@ -58,6 +58,16 @@ void describe(Visit& visit, MeshSettings& mesh) {
 }
 
 template <class Visit>
+void describe(Visit& visit, ProfileSettings& profile) {
+  visit({.name = "along", .meaning = "What the first column of `points` is."}, profile.along);
+  visit({.name = "points",
+         .required = true,
+         .meaning = "Pairs [place in m or time in s, factor], the first ascending; linear in "
+                    "between, constant beyond the ends."},
+        profile.points);
+}
+
+template <class Visit>
 void describe(Visit& visit, BoundarySettings& boundary) {
   visit({.name = "type", .required = true, .meaning = "What is known on the patch."},
         boundary.type);
@@ -83,7 +93,8 @@ void describe(Visit& visit, BoundarySettings& boundary) {
          .required = true,
          .applies = boundary.type == BoundaryType::mass_flow,
          .only_with = "type: mass_flow",
-         .meaning = "Mass flow into the domain over the whole patch; negative: out of it."},
+         .meaning = "Mass flow into the domain over the whole patch; negative: out of it. A "
+                    "formula may use t; a `profile` along x, y or z gives it a shape."},
         boundary.rate);
   visit({.name = "value",
          .dimension = Dimension::pressure,
@@ -91,18 +102,45 @@ void describe(Visit& visit, BoundarySettings& boundary) {
          .only_with = "type: pressure",
          .meaning = "Pressure less the hydrostatic one, p - rho g.x."},
         boundary.value);
+  const bool wall = boundary.type == BoundaryType::wall;
+  visit({.name = "profile",
+         .applies = !wall,
+         .only_with = "type: velocity | mass_flow | pressure",
+         .meaning = "Tables that multiply the value."},
+        boundary.profile);
+  visit({.name = "ramp",
+         .dimension = Dimension::time,
+         .range = not_negative,
+         .meaning = "The value grows linearly from 0 during this time; 0: at once."},
+        boundary.ramp);
   visit({.name = "slip",
-         .applies = boundary.type == BoundaryType::wall,
+         .applies = wall,
          .only_with = "type: wall",
-         .meaning = "`none`: the fluid sticks to the wall; `free`: no friction."},
+         .meaning = "`none`: the fluid sticks to the wall; `free`: no friction; `partial`: it "
+                    "slips by `slip_length` times its shear rate at the wall."},
         boundary.slip);
+  visit({.name = "slip_length",
+         .dimension = Dimension::length,
+         .range = positive,
+         .required = true,
+         .applies = wall && boundary.slip == Slip::partial,
+         .only_with = "slip: partial",
+         .meaning = "Depth in the wall at which the velocity profile would reach the wall's."},
+        boundary.slip_length);
+  visit({.name = "velocity",
+         .dimension = Dimension::velocity,
+         .applies = wall && boundary.slip != Slip::free,
+         .only_with = "type: wall, slip: none | partial",
+         .meaning = "Of a wall that moves along itself; its part normal to the wall is left out."},
+        boundary.velocity);
 }
 
 template <class Visit>
 void describe(Visit& visit, InitialSettings& initial) {
   visit({.name = "superficial",
          .dimension = Dimension::velocity,
-         .meaning = "Superficial velocity at time 0 in every cell."},
+         .meaning = "Superficial velocity at time 0 in every cell, and as the mean over each "
+                    "face."},
         initial.superficial);
 }
 
@@ -122,6 +160,16 @@ void describe(Visit& visit, FluidNumerics& numerics) {
          .meaning =
              "How momentum is carried through faces; `limited`: second order with a TVD limiter."},
         numerics.convection);
+  visit({.name = "time",
+         .meaning = "`euler`: first order, the choice for moving beds; `bdf2`: second order, "
+                    "which falls back to Euler where a voidage front crosses half a cell in one "
+                    "step."},
+        numerics.time);
+  visit({.name = "courant_limit",
+         .range = positive,
+         .meaning = "A window in which fluid would cross more cells than this is solved in equal "
+                    "inner steps; fields of such a window are means over it."},
+        numerics.courant_limit);
   visit({.name = "correctors",
          .range = {.lower = 1, .upper = 100},
          .meaning = "Pressure corrections in a window."},

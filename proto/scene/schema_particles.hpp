@@ -164,6 +164,11 @@ void describe(Visit& visit, PrescribedSettings& prescribed) {
 
 template <class Visit>
 void describe(Visit& visit, InterphaseSettings& interphase) {
+  visit({.name = "model",
+         .meaning = "Where the pressure gradient acts (Gidaspow 1994): `a`: on fluid and "
+                    "particles, in proportion to their volume; `b`: on the fluid alone, with the "
+                    "drag over the voidage; particles feel buoyancy."},
+        interphase.model);
   visit({.name = "voidage",
          .meaning = "Map from particles to cells. `exact`: overlap of sphere and cell; `centroid`: "
                     "all volume to one cell, "

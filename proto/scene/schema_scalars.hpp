@@ -10,13 +10,12 @@ template <class Visit>
 void describe(Visit& visit, ScalarBoundarySettings& boundary) {
   visit({.name = "value",
          .otherwise = "zero gradient",
-         .meaning = "Formula in x, y, z [m], t [s]: what enters with the fluid has this value, and "
+         .meaning = "What enters with the fluid has this value, and "
                     "inlets and walls hold it. At a pressure patch it is that of what flows back."},
         boundary.value);
   visit({.name = "flux",
          .otherwise = "zero gradient",
-         .meaning = "Formula in x, y, z [m], t [s]: what enters through a wall, kg/(m2.s) of a "
-                    "species, W/m2 of heat."},
+         .meaning = "What enters through a wall, kg/(m2.s) of a species, W/m2 of heat."},
         boundary.flux);
 }
 
@@ -50,12 +49,10 @@ void describe(Visit& visit, ScalarSettings& scalar) {
          .only_with = "kind: temperature",
          .meaning = "Of the fluid, at constant pressure."},
         scalar.heat_capacity);
-  visit({.name = "initial", .meaning = "Formula in x, y, z [m]: the field at time 0."},
-        scalar.initial);
+  visit({.name = "initial", .meaning = "The field at time 0."}, scalar.initial);
   visit({.name = "source",
          .otherwise = "none",
-         .meaning = "Formula in x, y, z [m], t [s]: what appears per volume of fluid, kg/(m3.s) of "
-                    "a species, W/m3 of heat."},
+         .meaning = "What appears per volume of fluid, kg/(m3.s) of a species, W/m3 of heat."},
         scalar.source);
   visit({.name = "boundaries",
          .meaning = "What the patches do to it; zero gradient where none is given: what enters "

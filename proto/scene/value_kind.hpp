@@ -49,6 +49,18 @@ struct ValueKind<Vector3> {
   static std::string text(const Key& /*key*/) { return "list of 3 numbers"; }
 };
 template <>
+struct ValueKind<Formula> {
+  static std::string text(const Key& /*key*/) { return "number or formula"; }
+};
+template <>
+struct ValueKind<VectorFormula> {
+  static std::string text(const Key& /*key*/) { return "list of 3 numbers or formulas"; }
+};
+template <>
+struct ValueKind<std::vector<std::array<double, 2>>> {
+  static std::string text(const Key& /*key*/) { return "list of pairs of numbers"; }
+};
+template <>
 struct ValueKind<std::array<double, 2>> {
   static std::string text(const Key& /*key*/) { return "list of 2 numbers, the lower first"; }
 };

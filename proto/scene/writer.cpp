@@ -22,6 +22,14 @@ std::string line_of(const std::string& text) {
   return quoted;
 }
 
+std::string line_of(const Formula& formula) {
+  return formula.text.empty() ? line_of(formula.number) : line_of(formula.text);
+}
+std::string line_of(const VectorFormula& vector) {
+  const auto& [x, y, z] = vector.components;
+  return fmt::format("[{}, {}, {}]", line_of(x), line_of(y), line_of(z));
+}
+
 template <class Enum>
 requires std::is_enum_v<Enum> std::string line_of(Enum value) {
   return std::string(name_of(value));

@@ -9,10 +9,10 @@ namespace fluxpact {
 namespace {
 
 void add_state(const FluidState& state, Fields& out) {
-  out.add(field::face_flux, std::span<const double>(state.face_flux));
-  out.add(field::velocity, std::span<const Vector3>(state.velocity));
+  out.add(field::face_flux, window_flux(state));
+  out.add(field::velocity, window_velocity(state));
   out.add(field::pressure, std::span<const double>(state.pressure));
-  out.add(field::pressure_gradient, std::span<const Vector3>(state.pressure_gradient));
+  out.add(field::pressure_gradient, window_pressure_gradient(state));
 }
 
 }  // namespace
@@ -50,9 +50,10 @@ void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
                            in.vectors(field::drag_source, cells_)};
   solver().advance(window, solids, progress);
   const FluidState& state = solver().candidate();
+  const auto velocity = window_velocity(state);
   for (int cell = 0; cell < cells_; ++cell) {
-    impulse_[cell] = window.length * (solids.drag_source[cell] -
-                                      solids.drag_coefficient[cell] * state.velocity[cell]);
+    impulse_[cell] =
+        window.length * (solids.drag_source[cell] - solids.drag_coefficient[cell] * velocity[cell]);
   }
   add_state(state, out);
   out.add(field::impulse_taken, std::span<const Vector3>(impulse_));

@@ -106,7 +106,7 @@ inline Balance balance_of(const Mesh& mesh, double density, const std::vector<do
   CompensatedSum in;
   CompensatedSum out;
   for (int f = 0; f < mesh.faces(); ++f) {
-    const double flux = state.face_flux[f];
+    const double flux = window_flux(state)[f];
     residual[mesh.owner[f]].add(flux);
     if (f < mesh.internal_faces()) {
       residual[mesh.neighbour[f]].add(-flux);

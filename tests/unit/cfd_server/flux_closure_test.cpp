@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Closure, does_not_add_up_its_rounding_over_the_cells) {
   const FluidCase c = column(4000, 4, 1.0);
   const Stencil stencil = make_stencil(c.mesh);
-  const BoundaryConditions conditions = read_boundaries(c.scene, c.mesh);
+  const BoundaryConditions conditions = read_boundaries(c.scene, c.mesh, stencil);
   ClosureTree tree = make_closure_tree(stencil, conditions, find_regions(stencil, conditions));
   std::mt19937 random(1);
   std::uniform_real_distribution<double> change(-1, 1);

@@ -142,6 +142,7 @@ TEST_F(Exchange, makes_the_force_of_drag_pressure_and_buoyancy) {
 
 TEST_F(Exchange, leaves_pressure_and_buoyancy_out_when_they_are_off) {
   settings.pressure_gradient = false;
+  settings.buoyancy = false;
   make_offer(0.01);
   window_forces(settings, offer, fluid(), particles, bulk, 2, 0.01, forces);
   for (int i = 0; i < particles.size(); ++i) {

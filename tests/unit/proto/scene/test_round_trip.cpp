@@ -101,6 +101,34 @@ TEST(WriteScene, is_read_back_and_written_the_same) {
   }
 }
 
+TEST(ReadScene, takes_formulas_where_a_value_may_vary) {
+  const std::string text = with("interstitial: [0, 0, 5]",
+                                "superficial: [0, 5 cm/s, \"t < 1 ? t : 1\"], ramp: 20 ms, "
+                                "profile: [{along: x, points: [[0, 0], [0.1, 1.5]]}]");
+  const Scene scene = read_scene(write_scene(read_scene(text, "s.yaml")), "written");
+  const BoundarySettings& jet = scene.fluid.boundaries.at("jet");
+  const auto& velocity = jet.superficial->components;
+  EXPECT_EQ(velocity[0], Formula(0.0));
+  EXPECT_EQ(velocity[1], Formula(0.05));
+  EXPECT_EQ(velocity[2].text, "t < 1 ? t : 1");
+  EXPECT_EQ(jet.ramp, 0.02);
+  ASSERT_EQ(jet.profile.size(), 1U);
+  EXPECT_EQ(jet.profile[0].along, Along::x);
+  EXPECT_EQ(jet.profile[0].points, (std::vector<std::array<double, 2>>{{0, 0}, {0.1, 1.5}}));
+}
+
+TEST(ReadScene, says_why_a_formula_or_a_table_is_none) {
+  expect_error(
+      with("interstitial: [0, 0, 5]", "interstitial: [0, 0, 5 lightyears]"),
+      "s.yaml:23:48: fluid.boundaries.jet.interstitial[2]: `5 lightyears` is neither a number",
+      {"nor a formula"});
+  expect_error(with("interstitial: [0, 0, 5]",
+                    "interstitial: [0, 0, 5], profile: [{along: x, points: [[0, 0], [0, 1]]}]"),
+               "s.yaml:23:90: fluid.boundaries.jet.profile[0].points[1]: 0 does not lie above 0 of "
+               "the row before",
+               {});
+}
+
 TEST(WriteScene, keeps_a_given_zero_apart_from_nothing_given) {
   const Scene scene = read_scene(with("interstitial: [0, 0, 5]", "interstitial: [0, 0, 0]"),
                                  "s.yaml", {"particles.contact.pairs[1].tangential_stiffness=0"});
@@ -140,8 +168,8 @@ TEST(WriteScene, keeps_every_double_bit_for_bit) {
     RC_ASSERT(same(again.scene.gravity[0], number));
     RC_ASSERT(same(again.scene.gravity[1], -number));
     RC_ASSERT(same(again.scene.gravity[2], other));
-    RC_ASSERT(same(again.fluid.boundaries.at("inlet").rate.value(), number));
-    RC_ASSERT(same(again.fluid.boundaries.at("outlet").value, other));
+    RC_ASSERT(same(again.fluid.boundaries.at("inlet").rate->number, number));
+    RC_ASSERT(same(again.fluid.boundaries.at("outlet").value.number, other));
     RC_ASSERT(same(again.fluid.density, std::abs(other)));
     RC_ASSERT(
         same(again.particles.contact.pairs[0].tangential_stiffness.value(), std::abs(number)));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "cfd_server/scalars/fluid_scalars.hpp"
 #include "cfd_server/vans/inner_steps.hpp"
 #include "cfd_server/vans/window_check.hpp"
 #include "cfd_server/vans/window_solver.hpp"
@@ -63,19 +64,23 @@ struct VansSolver::Impl {
         voidage(problem.stencil.volume.size()) {
     resize(committed, problem.stencil);
     resize(candidate, problem.stencil);
+    if (!scene.fluid.scalars.empty())
+      scalars = std::make_unique<FluidScalars>(scene, mesh, problem.stencil);
   }
 
   void warn_once();
   void advance_step(const FluidState& from, const Window& step, const SolidsInput& solids,
                     const Progress& progress, FluidState& to);
+  void carry(const FluidState& from, const FluidState& to, const Window& step);
   void finish_window(const Window& window, int inner_steps);
 
   FluidProblem problem;
   WindowFields fields;
   VectorValue initial_superficial;
-  std::vector<double> voidage;  ///< at the end of an inner step
-  FluidState between;           ///< of inner steps; sized when a window first needs them
-  WindowMeans means;            ///< of the window in hand; sized with it
+  std::vector<double> voidage;            ///< at the end of an inner step
+  FluidState between;                     ///< of inner steps; sized when a window first needs them
+  WindowMeans means;                      ///< of the window in hand; sized with it
+  std::unique_ptr<FluidScalars> scalars;  ///< nothing if the scene has none
   FluidState committed;
   FluidState candidate;
   FluidReport report;
@@ -130,6 +135,15 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
   check_finite(problem.stencil, to, window.step);
 }
 
+/// What the fluid carries, with the mass that passed in a step.
+void VansSolver::Impl::carry(const FluidState& from, const FluidState& to, const Window& step) {
+  if (!scalars) return;
+  const std::span<const double> passed = to.before.passed.empty() ? to.face_flux : to.before.passed;
+  scalars->advance({problem.fluid.density, step.length, from.voidage, to.voidage, passed,
+                    problem.continuity == Continuity::conservative},
+                   step.end(), {});
+}
+
 /// The window's mean flux balances what the voidage changed by, to the last digit.
 void VansSolver::Impl::finish_window(const Window& window, int inner_steps) {
   if (inner_steps == 1) candidate.means = {};
@@ -182,6 +196,7 @@ void VansSolver::start(std::span<const double> voidage) {
   state.step = 0;
   state.before = {};
   state.means = {};
+  if (self.scalars) self.scalars->start();
   self.has_candidate = false;
 }
 
@@ -198,6 +213,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
       courant_number(problem, self.committed, self.fields.boundary, solids.voidage, window.length);
   const int count = count_inner_steps(courant, problem.numerics.courant_limit, window);
   if (count > 1 && self.between.voidage.empty()) resize(self.between, problem.stencil);
+  if (self.scalars) self.scalars->open_window();
   const FluidState* from = &self.committed;
   for (int number = 1; number <= count; ++number) {
     const bool last = number == count;
@@ -207,13 +223,16 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
     const SolidsInput at_end{last ? solids.voidage : std::span<const double>(self.voidage),
                              solids.drag_coefficient, solids.drag_source};
     FluidState& to = from == &self.candidate ? self.between : self.candidate;
-    self.advance_step(*from, inner_window(window, number, count), at_end, progress, to);
+    const Window step = inner_window(window, number, count);
+    self.advance_step(*from, step, at_end, progress, to);
+    self.carry(*from, to, step);
     if (count > 1) add_to_means(to, number, count, self.means);
     from = &to;
   }
   if (from == &self.between) std::swap(self.between, self.candidate);
   if (count > 1) std::swap(self.means, self.candidate.means);
   self.finish_window(window, count);
+  if (self.scalars) self.scalars->close_window(window.length);
   self.has_candidate = true;
   self.warn_once();
 }
@@ -222,6 +241,7 @@ void VansSolver::commit() {
   if (!impl_->has_candidate)
     throw NumericsError("fluid: there is no candidate to commit; advance must come first");
   std::swap(impl_->committed, impl_->candidate);
+  if (impl_->scalars) impl_->scalars->commit();
   impl_->has_candidate = false;
 }
 
@@ -243,5 +263,6 @@ std::span<const Vector3> window_pressure_gradient(const FluidState& state) {
 const FluidState& VansSolver::committed() const { return impl_->committed; }
 const FluidState& VansSolver::candidate() const { return impl_->candidate; }
 const FluidReport& VansSolver::report() const { return impl_->report; }
+const FluidScalars* VansSolver::scalars() const { return impl_->scalars.get(); }
 
 }  // namespace fluxpact

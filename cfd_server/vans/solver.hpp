@@ -65,6 +65,8 @@ struct FluidReport {
   double closure_correction = 0;  ///< largest flux change by the closure over the largest flux [-]
 };
 
+class FluidScalars;
+
 class VansSolver {
  public:
   /// Throws ConfigError if the scene cannot be solved on this mesh (a patch without a condition,
@@ -84,6 +86,8 @@ class VansSolver {
   const FluidState& committed() const;
   const FluidState& candidate() const;
   const FluidReport& report() const;
+  /// Nothing if the scene has none.
+  const FluidScalars* scalars() const;
 
  private:
   struct Impl;

@@ -161,11 +161,11 @@ struct FluidNumerics {
 
 enum class ScalarKind { species, temperature };
 
-/// What a patch does to a scalar. Formulas in x, y, z [m] (face centre) and t [s]; empty: not
-/// given.
+/// What a patch does to a scalar.
 struct ScalarBoundarySettings {
-  std::string value;  ///< of what enters with the fluid, and at the wall
-  std::string flux;  ///< into the domain through a wall: [kg/(m² s)] of a species, [W/m²] of heat
+  std::optional<Formula> value;  ///< of what enters with the fluid, and at the wall
+  std::optional<Formula>
+      flux;  ///< into the domain through a wall: [kg/(m² s)] of a species, [W/m²] of heat
 };
 
 /// A field that the fluid carries, c per mass of fluid.

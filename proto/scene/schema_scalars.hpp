@@ -21,10 +21,10 @@ void describe(Visit& visit, ScalarBoundarySettings& boundary) {
 
 template <class Visit>
 void describe(Visit& visit, ScalarSettings& scalar) {
-  const bool species = scalar.kind == ScalarKind::species;
   visit({.name = "kind",
          .meaning = "`species`: an amount per mass of fluid. `temperature`: heat, in K."},
         scalar.kind);
+  const bool species = scalar.kind == ScalarKind::species;
   visit({.name = "diffusivity",
          .dimension = Dimension::diffusivity,
          .range = not_negative,
@@ -83,9 +83,9 @@ void describe(Visit& visit, TurbulentInletSettings& inlet) {
 
 template <class Visit>
 void describe(Visit& visit, TurbulenceSettings& turbulence) {
+  visit({.name = "model", .meaning = "Where the eddy viscosity comes from."}, turbulence.model);
   const bool smagorinsky = turbulence.model == TurbulenceModel::smagorinsky;
   const bool k_epsilon = turbulence.model == TurbulenceModel::k_epsilon;
-  visit({.name = "model", .meaning = "Where the eddy viscosity comes from."}, turbulence.model);
   visit({.name = "smagorinsky_constant",
          .range = positive,
          .applies = smagorinsky,

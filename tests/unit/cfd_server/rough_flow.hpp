@@ -25,7 +25,7 @@ struct RoughFlow {
     fluid.side("outlet", Side::z_max, pressure_outlet());
     fluid.make_mesh();
     stencil = make_stencil(fluid.mesh);
-    const BoundaryConditions conditions = read_boundaries(fluid.scene, fluid.mesh);
+    const BoundaryConditions conditions = read_boundaries(fluid.scene, fluid.mesh, stencil);
     tree = make_closure_tree(stencil, conditions, find_regions(stencil, conditions));
     old_voidage.assign(static_cast<std::size_t>(stencil.cells), 1.0);
     voidage = old_voidage;

@@ -11,36 +11,6 @@ namespace {
 
 constexpr int most_iterations = 1000;
 
-/// a_f, the diagonal and M^{n+1}/Δt.
-void assemble(const Stencil& s, const FluidStep& step, const ScalarInput& in, ScalarWork& w) {
-  const double rate = step.density / step.length;
-  for (int cell = 0; cell < s.cells; ++cell) {
-    const double old_capacity = rate * s.volume[cell] * step.old_voidage[cell];
-    const double capacity = rate * s.volume[cell] * step.voidage[cell];
-    w.diagonal[cell] = step.closed ? old_capacity : capacity;
-    if (!in.sink.empty()) w.diagonal[cell] += in.sink[cell];
-  }
-  for (int f = 0; f < s.faces; ++f) {
-    const bool internal = f < s.internal_faces;
-    const double flux = step.face_flux[f];
-    const bool carries = internal || in.boundary.brings(f - s.internal_faces);
-    w.into_owner[f] = (carries ? std::max(-flux, 0.0) : 0.0) + in.conductance[f];
-    w.into_neighbour[f] = std::max(flux, 0.0) + in.conductance[f];
-    w.diagonal[s.owner[f]] += w.into_owner[f];
-    if (internal) w.diagonal[s.neighbour[f]] += w.into_neighbour[f];
-    if (step.closed) continue;
-    // The rest of r: with M^{n+1} on the diagonal it is the sum of the fluxes.
-    w.diagonal[s.owner[f]] += flux;
-    if (internal) w.diagonal[s.neighbour[f]] -= flux;
-  }
-  for (std::size_t side = 0; side < s.side_face.size(); ++side) {
-    const int f = s.side_face[side];
-    w.weight[side] = s.side_other[side] < 0  ? 0.0
-                     : s.side_sign[side] > 0 ? w.into_owner[f]
-                                             : w.into_neighbour[f];
-  }
-}
-
 /// What the step's equation leaves at `value` [kg c/s].
 void evaluate_residual(const Stencil& s, const FluidStep& step, const ScalarInput& in,
                        std::span<const double> old, std::span<const double> value,
@@ -141,6 +111,36 @@ void sum_boundary(const Stencil& s, const FluidStep& step, const ScalarInput& in
 
 }  // namespace
 
+void assemble_transport(const Stencil& s, const FluidStep& step, const ScalarInput& in,
+                        ScalarWork& w) {
+  const double rate = step.density / step.length;
+  for (int cell = 0; cell < s.cells; ++cell) {
+    const double old_capacity = rate * s.volume[cell] * step.old_voidage[cell];
+    const double capacity = rate * s.volume[cell] * step.voidage[cell];
+    w.diagonal[cell] = step.closed ? old_capacity : capacity;
+    if (!in.sink.empty()) w.diagonal[cell] += in.sink[cell];
+  }
+  for (int f = 0; f < s.faces; ++f) {
+    const bool internal = f < s.internal_faces;
+    const double flux = step.face_flux[f];
+    const bool carries = internal || in.boundary.brings(f - s.internal_faces);
+    w.into_owner[f] = (carries ? std::max(-flux, 0.0) : 0.0) + in.conductance[f];
+    w.into_neighbour[f] = std::max(flux, 0.0) + in.conductance[f];
+    w.diagonal[s.owner[f]] += w.into_owner[f];
+    if (internal) w.diagonal[s.neighbour[f]] += w.into_neighbour[f];
+    if (step.closed) continue;
+    // The rest of r: with M^{n+1} on the diagonal it is the sum of the fluxes.
+    w.diagonal[s.owner[f]] += flux;
+    if (internal) w.diagonal[s.neighbour[f]] -= flux;
+  }
+  for (std::size_t side = 0; side < s.side_face.size(); ++side) {
+    const int f = s.side_face[side];
+    w.weight[side] = s.side_other[side] < 0  ? 0.0
+                     : s.side_sign[side] > 0 ? w.into_owner[f]
+                                             : w.into_neighbour[f];
+  }
+}
+
 ScalarWork::ScalarWork(const Stencil& s) : solver(static_cast<std::size_t>(s.cells), 0.0) {
   const auto cells = static_cast<std::size_t>(s.cells);
   const auto faces = static_cast<std::size_t>(s.faces);
@@ -208,7 +208,7 @@ int advance_scalar(const Stencil& s, const FluidStep& step, const ScalarInput& i
                    std::span<const Vector3> gradient_coefficients, Convection scheme,
                    double tolerance, const char* name, ScalarWork& w, std::span<double> value,
                    std::span<double> boundary_flux) {
-  assemble(s, step, in, w);
+  assemble_transport(s, step, in, w);
   std::ranges::fill(w.flux, 0.0);
   if (scheme != Convection::upwind || !s.orthogonal)
     correct(s, step, in, gradient_coefficients, scheme, value, w);

@@ -70,6 +70,11 @@ void diffusive_conductance(const Stencil& stencil, const ScalarBoundary& boundar
                            std::span<const double> eddy, double eddy_number,
                            std::span<double> conductance);
 
+/// into_owner, into_neighbour, weight and diagonal of the implicit upwind step: what multiplies c
+/// is a diagonal at least as large as the sum of the row's weights.
+void assemble_transport(const Stencil& stencil, const FluidStep& step, const ScalarInput& input,
+                        ScalarWork& work);
+
 /// Higher-order part of the convected flux and the non-orthogonal part of the diffusive one [kg
 /// c/s], out of the owner, for the field `value` [c] with its gradient. limited: van Leer's limiter
 /// (J. Comput. Phys. 14, 1974, 361-370) in the form of Darwish & Moukalled (Int. J. Heat Mass

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cfd_server/scalars/fluid_scalars.hpp"
+#include "cfd_server/turbulence/turbulence.hpp"
 #include "cfd_server/vans/inner_steps.hpp"
 #include "cfd_server/vans/window_check.hpp"
 #include "cfd_server/vans/window_solver.hpp"
@@ -66,6 +67,9 @@ struct VansSolver::Impl {
     resize(candidate, problem.stencil);
     if (!scene.fluid.scalars.empty())
       scalars = std::make_unique<FluidScalars>(scene, mesh, problem.stencil);
+    if (scene.fluid.turbulence.model != TurbulenceModel::none) {
+      turbulence = std::make_unique<Turbulence>(scene, mesh, problem.stencil, problem.conditions);
+    }
   }
 
   void warn_once();
@@ -77,10 +81,11 @@ struct VansSolver::Impl {
   FluidProblem problem;
   WindowFields fields;
   VectorValue initial_superficial;
-  std::vector<double> voidage;            ///< at the end of an inner step
-  FluidState between;                     ///< of inner steps; sized when a window first needs them
-  WindowMeans means;                      ///< of the window in hand; sized with it
-  std::unique_ptr<FluidScalars> scalars;  ///< nothing if the scene has none
+  std::vector<double> voidage;             ///< at the end of an inner step
+  FluidState between;                      ///< of inner steps; sized when a window first needs them
+  WindowMeans means;                       ///< of the window in hand; sized with it
+  std::unique_ptr<FluidScalars> scalars;   ///< nothing if the scene has none
+  std::unique_ptr<Turbulence> turbulence;  ///< nothing without a model
   FluidState committed;
   FluidState candidate;
   FluidReport report;
@@ -114,6 +119,7 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
                                     FluidState& to) {
   const Step step{problem, from, window, solids};
   const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
+  if (turbulence) fields.viscosity = turbulence->prepare(from.velocity, fields.boundary);
   open_step(step, time, fields);
   pre_correct(step, fields, report);
   if (progress) progress();
@@ -137,11 +143,18 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
 
 /// What the fluid carries, with the mass that passed in a step.
 void VansSolver::Impl::carry(const FluidState& from, const FluidState& to, const Window& step) {
-  if (!scalars) return;
+  if (!scalars && !turbulence) return;
   const std::span<const double> passed = to.before.passed.empty() ? to.face_flux : to.before.passed;
-  scalars->advance({problem.fluid.density, step.length, from.voidage, to.voidage, passed,
-                    problem.continuity == Continuity::conservative},
-                   step.end(), {});
+  const FluidStep done{problem.fluid.density,
+                       step.length,
+                       from.voidage,
+                       to.voidage,
+                       passed,
+                       problem.continuity == Continuity::conservative};
+  if (turbulence) turbulence->advance(done, to.velocity, fields.boundary);
+  if (!scalars) return;
+  scalars->advance(done, step.end(),
+                   turbulence ? turbulence->eddy_viscosity() : std::span<const double>{});
 }
 
 /// The window's mean flux balances what the voidage changed by, to the last digit.
@@ -197,6 +210,7 @@ void VansSolver::start(std::span<const double> voidage) {
   state.before = {};
   state.means = {};
   if (self.scalars) self.scalars->start();
+  if (self.turbulence) self.turbulence->start();
   self.has_candidate = false;
 }
 
@@ -214,6 +228,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   const int count = count_inner_steps(courant, problem.numerics.courant_limit, window);
   if (count > 1 && self.between.voidage.empty()) resize(self.between, problem.stencil);
   if (self.scalars) self.scalars->open_window();
+  if (self.turbulence) self.turbulence->open_window();
   const FluidState* from = &self.committed;
   for (int number = 1; number <= count; ++number) {
     const bool last = number == count;
@@ -242,6 +257,7 @@ void VansSolver::commit() {
     throw NumericsError("fluid: there is no candidate to commit; advance must come first");
   std::swap(impl_->committed, impl_->candidate);
   if (impl_->scalars) impl_->scalars->commit();
+  if (impl_->turbulence) impl_->turbulence->commit();
   impl_->has_candidate = false;
 }
 
@@ -264,5 +280,6 @@ const FluidState& VansSolver::committed() const { return impl_->committed; }
 const FluidState& VansSolver::candidate() const { return impl_->candidate; }
 const FluidReport& VansSolver::report() const { return impl_->report; }
 const FluidScalars* VansSolver::scalars() const { return impl_->scalars.get(); }
+const Turbulence* VansSolver::turbulence() const { return impl_->turbulence.get(); }
 
 }  // namespace fluxpact

@@ -66,6 +66,7 @@ struct FluidReport {
 };
 
 class FluidScalars;
+class Turbulence;
 
 class VansSolver {
  public:
@@ -88,6 +89,7 @@ class VansSolver {
   const FluidReport& report() const;
   /// Nothing if the scene has none.
   const FluidScalars* scalars() const;
+  const Turbulence* turbulence() const;
 
  private:
   struct Impl;

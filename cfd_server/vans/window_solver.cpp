@@ -203,7 +203,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w) 
     convecting = w.convecting;
   }
   assemble_momentum(s, problem.conditions, problem.fluid, old_state, step.solids, time, convecting,
-                    {}, w.momentum);
+                    w.viscosity, w.momentum);
   assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w), old_state,
                  time, w.faces);
   assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);

@@ -140,7 +140,7 @@ TEST(Diffusion, is_exact_between_held_walls_across_a_jump_of_the_voidage) {
   std::fill(voidage.begin() + 5, voidage.end(), 1.0);
   heat.set_diffusion(2.0, voidage);
   const std::vector<double> still(static_cast<std::size_t>(stencil.faces), 0.0);
-  for (int step = 0; step < 300; ++step) heat.advance({1.2, 10.0, voidage, voidage, still, true});
+  for (int step = 0; step < 300; ++step) heat.advance({1.2, 0.01, voidage, voidage, still, true});
   // Resistances in series: 0.05/(0.4 · 2) + 0.05/2 = 0.0875 m s/kg; flux 100/0.0875 · 1e-4 m².
   const double flux = 100 / 0.0875 * 1e-4;
   for (int b = 0; b < stencil.boundary_faces(); ++b) {

@@ -69,7 +69,12 @@ void Turbulence::advance(const FluidStep& step, std::span<const Vector3> velocit
   if (k_epsilon_) {
     for (int cell = 0; cell < stencil_.cells; ++cell) strain_[cell] = strain_rate(gradient_[cell]);
     const std::vector<WallFace>& walls = k_epsilon_->walls();
-    for (std::size_t i = 0; i < walls.size(); ++i) wall_speed_[i] = jump_[walls[i].face].norm();
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+      const int f = stencil_.internal_faces + walls[i].face;
+      const Vector3 normal = stencil_.area[f] / stencil_.area_size[f];
+      const Vector3& jump = jump_[walls[i].face];
+      wall_speed_[i] = (jump - jump.dot(normal) * normal).norm();
+    }
     k_epsilon_->advance(step, {density_, viscosity_, strain_, wall_speed_, boundary.velocity},
                         eddy_, candidate_);
   }

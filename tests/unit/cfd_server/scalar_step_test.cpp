@@ -183,6 +183,43 @@ TEST(Bounds, hold_on_a_skewed_mesh_with_strong_cross_diffusion) {
   }
 }
 
+TEST(SkewedMesh, keeps_a_linear_field_between_held_walls_and_its_budget) {
+  FluidCase box({6, 5, 4}, {0.6, 0.5, 0.4});
+  box.make_mesh();
+  const Mesh mesh = perturbed(box.mesh, {0.1, 0.1, 0.1}, 0.15, 7);
+  const Stencil stencil = make_stencil(mesh);
+  ASSERT_FALSE(stencil.orthogonal);
+  ScalarBoundary walls = same_everywhere(stencil, ScalarFace::value, 0);
+  const auto linear = [](const Vector3& at) { return 1 + at.x() - 2 * at.y() + 0.5 * at.z(); };
+  for (int b = 0; b < stencil.boundary_faces(); ++b) {
+    const int f = stencil.internal_faces + b;
+    walls.value[b] = linear(stencil.centre[stencil.owner[f]] + stencil.from_owner[f]);
+  }
+  ScalarCase heat(stencil, walls, Convection::limited, 1e-14);
+  const std::vector<double> voidage(static_cast<std::size_t>(stencil.cells), 1.0);
+  const std::vector<double> still(static_cast<std::size_t>(stencil.faces), 0.0);
+  heat.set_diffusion(1.0, voidage);
+  for (int cell = 0; cell < stencil.cells; ++cell) heat.value[cell] = linear(stencil.centre[cell]);
+  const auto amount = [&] {
+    CompensatedSum sum;
+    for (int cell = 0; cell < stencil.cells; ++cell)
+      sum.add(stencil.volume[cell] * heat.value[cell]);
+    return sum.value();
+  };
+  const FluidStep step{1.0, 1e-4, voidage, voidage, still, true};
+  for (int number = 0; number < 20; ++number) {
+    heat.advance(step);
+    for (int cell = 0; cell < stencil.cells; ++cell)
+      ASSERT_NEAR(heat.value[cell], linear(stencil.centre[cell]), 1e-12) << number;
+  }
+  heat.value[40] += 1;  // and its budget where it is not steady
+  for (int number = 0; number < 20; ++number) {
+    const double before = amount();
+    heat.advance(step);
+    ASSERT_NEAR(amount() - before + heat.left() * step.length, 0, 1e-15) << number;
+  }
+}
+
 TEST(Correction, is_cut_to_the_range_of_the_neighbours_on_both_sides_alike) {
   FluidCase box({3, 1, 1}, {3, 1, 1});
   box.make_mesh();

@@ -65,12 +65,14 @@ FluidScalars::Scalar::Scalar(const std::string& its_name, const ScalarSettings& 
   boundary.value.assign(faces, 0.0);
   for (const auto& [patch_name, entry] : settings.boundaries) {
     const Patch* const patch = mesh.find_patch(patch_name);
-    const auto fluid = scene.fluid.boundaries.find(patch_name);
-    if (patch == nullptr || fluid == scene.fluid.boundaries.end()) {
+    if (patch == nullptr) {
       throw ConfigError("fluid.scalars.{}.boundaries.{}: the mesh has no such patch", name,
                         patch_name);
     }
-    const ScalarFace kind = rule(entry, fluid->second.type);
+    const auto fluid = scene.fluid.boundaries.find(patch_name);
+    const BoundaryType type =
+        fluid == scene.fluid.boundaries.end() ? BoundaryType::wall : fluid->second.type;
+    const ScalarFace kind = rule(entry, type);
     if (kind == ScalarFace::zero_gradient) continue;
     const int first = patch->first - s.internal_faces;
     for (int b = first; b < first + patch->size; ++b) boundary.kind[b] = kind;

@@ -41,13 +41,13 @@ void guard(const Stencil& s, int cell, std::span<const double> capacity,
   }
   const double room_above = capacity[cell] * (w.highest[cell] - value[cell]);
   const double room_below = capacity[cell] * (value[cell] - w.lowest[cell]);
-  w.gain[cell] = enters > room_above ? room_above / enters : 1.0;
-  w.loss[cell] = leaves > room_below ? room_below / leaves : 1.0;
+  const double gain = enters > room_above ? room_above / enters : 1.0;
+  const double loss = leaves > room_below ? room_below / leaves : 1.0;
   w.guarded[cell] = 1;
   for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
     const int f = s.side_face[side];
     const bool out = s.side_sign[side] * flux[f] > 0;
-    w.factor[f] = std::min(w.factor[f], out ? w.loss[cell] : w.gain[cell]);
+    w.factor[f] = std::min(w.factor[f], out ? loss : gain);
   }
 }
 
@@ -72,8 +72,7 @@ bool leaves_its_range(const CorrectionWork& w, int cell) {
 
 void resize(CorrectionWork& w, const Stencil& s) {
   const auto cells = static_cast<std::size_t>(s.cells);
-  for (auto* values : {&w.lowest, &w.highest, &w.gain, &w.loss, &w.corrected})
-    values->assign(cells, 0.0);
+  for (auto* values : {&w.lowest, &w.highest, &w.corrected}) values->assign(cells, 0.0);
   w.guarded.assign(cells, 0);
   w.factor.assign(static_cast<std::size_t>(s.faces), 1.0);
 }

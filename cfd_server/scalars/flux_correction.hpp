@@ -18,9 +18,8 @@ namespace fluxpact {
 /// Sized once, one entry a cell; factor one a face.
 struct CorrectionWork {
   std::vector<double> lowest, highest;  ///< [c] that a cell may reach
-  std::vector<double> gain, loss;  ///< factors of all that enters and of all that leaves the cell
-  std::vector<double> corrected;   ///< [c] with the factors in hand
-  std::vector<std::uint8_t> guarded;  ///< its factors are in force
+  std::vector<double> corrected;        ///< [c] with the factors in hand
+  std::vector<std::uint8_t> guarded;    ///< its factors are in force
   std::vector<double> factor;
 };
 

@@ -63,6 +63,17 @@ void add_sides(const Mesh& mesh, Stencil& s) {
   }
 }
 
+std::vector<std::uint8_t> find_few_faces(const Stencil& s) {
+  std::vector<std::uint8_t> few(static_cast<std::size_t>(s.cells), 0);
+  bool any = false;
+  for (int cell = 0; cell < s.cells; ++cell) {
+    few[cell] = s.side_offsets[cell + 1] - s.side_offsets[cell] < 6 ? 1 : 0;
+    any = any || few[cell] != 0;
+  }
+  if (!any) few.clear();
+  return few;
+}
+
 bool has_equal_cells(const Lattice& lattice) {
   return std::ranges::all_of(lattice.nodes, [](const std::vector<double>& nodes) {
     const double mean = (nodes.back() - nodes.front()) / static_cast<double>(nodes.size() - 1);
@@ -86,6 +97,7 @@ Stencil make_stencil(const Mesh& mesh) {
   s.centre = mesh.cell_centres;
   add_faces(mesh, s);
   add_sides(mesh, s);
+  s.few_faces = find_few_faces(s);
   s.centred = mesh.lattice.has_value();
   s.uniform = mesh.lattice && has_equal_cells(*mesh.lattice);
   return s;

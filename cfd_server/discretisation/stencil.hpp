@@ -4,6 +4,7 @@
 // writes it.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "proto/base/vector.hpp"
@@ -38,6 +39,11 @@ struct Stencil {
   std::vector<int> side_face;
   std::vector<int> side_other;    ///< the cell across, −1 at the boundary
   std::vector<double> side_sign;  ///< +1 where the cell owns the face, −1 where it is the neighbour
+
+  /// One a cell: 1 where the cell has too few faces for its velocity to be rebuilt from their
+  /// fluxes (tetrahedra, prisms, pyramids: fewer than two for each component). Empty if there is
+  /// none.
+  std::vector<std::uint8_t> few_faces;
 
   bool orthogonal = false;  ///< every k vanishes
   bool centred =

@@ -55,6 +55,23 @@ void add_cross_diffusion(const Stencil& s, const TransportCoefficients& c,
   }
 }
 
+/// μ ε_f [(∇u)ᵀ·A − 2/3 (∇·u) A]: the part of the stress that vanishes where ε μ is uniform.
+void add_transposed_stress(const Stencil& s, const TransportCoefficients& c,
+                           std::span<const Matrix3> gradient, std::span<Vector3> force) {
+  for (int f = 0; f < s.faces; ++f) {
+    const double viscous = c.diffusion[f] / s.conductance[f];  // μ ε_f; 0 where no value is given
+    const int p = s.owner[f];
+    Matrix3 at_face = gradient[p];
+    if (f < s.internal_faces) {
+      at_face = (1 - s.weight[f]) * at_face + s.weight[f] * gradient[s.neighbour[f]];
+    }
+    const Vector3 part =
+        viscous * (at_face.transpose() * s.area[f] - (2.0 / 3.0 * at_face.trace()) * s.area[f]);
+    force[p] += part;
+    if (f < s.internal_faces) force[s.neighbour[f]] -= part;
+  }
+}
+
 }  // namespace
 
 void finish_coefficients(TransportCoefficients& c) {
@@ -78,6 +95,7 @@ void transport_force(const Stencil& s, const TransportCoefficients& c, Convectio
   }
   if (scheme != Convection::upwind) add_higher_order(s, c, scheme, velocity, gradient, force);
   if (!s.orthogonal) add_cross_diffusion(s, c, gradient, force);
+  add_transposed_stress(s, c, gradient, force);
 }
 
 }  // namespace fluxpact

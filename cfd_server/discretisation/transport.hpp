@@ -26,7 +26,8 @@ struct TransportCoefficients {
 /// Fill into_owner and into_neighbour from mass_flux and diffusion.
 void finish_coefficients(TransportCoefficients& coefficients);
 
-/// force [N] = Σ_f [ a (u_N − u_P) − F (u_higher − u_upwind) + μ ε_f (∇u)_f·k ] for each cell.
+/// force [N] = Σ_f [ a (u_N − u_P) − F (u_higher − u_upwind) + μ ε_f (∇u)_f·k
+///                   + μ ε_f ((∇u)ᵀ_f − 2/3 (∇·u)_f)·A ] for each cell.
 /// velocity [m/s] and its gradient one a cell; boundary_jump = u_b − u_P, zero where no value is
 /// given. limited: van Leer's limiter for each component (van Leer, J. Comput. Phys. 14, 1974,
 /// 361-370), in the form for unstructured meshes of Darwish & Moukalled (Int. J. Heat Mass Transfer

@@ -2,7 +2,13 @@
 
 namespace fluxpact {
 
-double rebuilt_share(const Stencil& stencil) { return stencil.uniform ? 1.0 : 0.2; }
+double rebuilt_share(const Stencil& s, int face) {
+  if (s.uniform) return 1.0;
+  if (s.few_faces.empty()) return 0.2;
+  const bool few = s.few_faces[s.owner[face]] != 0 ||
+                   (face < s.internal_faces && s.few_faces[s.neighbour[face]] != 0);
+  return few ? 0.05 : 0.2;
+}
 
 void resize(FaceCoefficients& c, const Stencil& s) {
   for (auto* values : {&c.mobility, &c.transport_resistance, &c.memory}) {
@@ -41,7 +47,6 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
 void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
                    const BoundaryValues& values, const FaceCoefficients& c, const FaceFluxInput& in,
                    std::span<double> flux) {
-  const double rebuilt = rebuilt_share(s);
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
     const int b = f - s.internal_faces;
@@ -62,6 +67,7 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
       value = 0.5 * (value + in.superficial[n] + in.superficial_gradient[n] * s.from_neighbour[f]);
       if (!s.orthogonal) slope += w * in.pressure_gradient[n];
     }
+    const double rebuilt = rebuilt_share(s, f);
     const double face_value = rebuilt * value.dot(s.area[f]) + (1 - rebuilt) * in.last_flux[f];
     double driving = force.dot(s.area[f]) + c.memory[f] + c.transport_resistance[f] * face_value;
     if (!s.orthogonal) driving -= s.cross[f].dot(slope);

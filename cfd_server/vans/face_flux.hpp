@@ -27,9 +27,11 @@ struct FaceCoefficients {
   std::vector<double> memory;                ///< m φ^n [kg/s²]: inertia of the old fluxes
 };
 
-/// How much of Q is rebuilt from the cells: all on uniform lattices; elsewhere mostly the face's
-/// own last flux, because the interpolation error of irregular cells would feed back.
-double rebuilt_share(const Stencil& stencil);
+/// How much of Q is rebuilt from the cells at a face: all on uniform lattices; elsewhere mostly the
+/// face's own last flux, because the interpolation error of irregular cells would feed back; least
+/// beside cells that are not rebuilt from their fluxes (with nothing at all, fluxes that no cell
+/// sees would never decay).
+double rebuilt_share(const Stencil& stencil, int face);
 
 void resize(FaceCoefficients& coefficients, const Stencil& stencil);
 

@@ -4,9 +4,8 @@
 // χ = 1 where the fluid bears it alone (model B; Gidaspow, Multiphase Flow and Fluidization, 1994):
 //     (A_t + A_b) u_P − C_P(u) + χ V ∇p = B_t + S
 // A_t = ρ V ε^n/Δt is the inertia, B_t = A_t u^n (Euler; see time_scheme.hpp), A_b the drag
-// coefficient, S the drag source, C_P the net force of convection and viscous stress ε μ ∇u. It
-// equals the conservative form because continuity holds exactly. The transposed part of the stress
-// is left out: it vanishes where ε is uniform, and where ε varies drag outweighs it.
+// coefficient, S the drag source, C_P the net force of convection and of the viscous stress
+// ε μ (∇u + ∇uᵀ − 2/3 ∇·u). It equals the conservative form because continuity holds exactly.
 #pragma once
 
 #include <cstdint>

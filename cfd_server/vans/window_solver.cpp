@@ -5,6 +5,7 @@
 
 #include "cfd_server/discretisation/gradient.hpp"
 #include "cfd_server/discretisation/reconstruction.hpp"
+#include "cfd_server/vans/cell_balance.hpp"
 #include "cfd_server/vans/legacy_continuity.hpp"
 #include "proto/base/errors.hpp"
 
@@ -26,6 +27,17 @@ std::span<const double> pressure_share(const Step& step, const WindowFields& w) 
   return step.problem.model == PressureModel::a ? step.solids.voidage : std::span(w.ones);
 }
 
+/// ∇p by least squares, for the non-orthogonal part of the faces' pressure force.
+void evaluate_pressure_slope(const FluidProblem& problem, WindowFields& w) {
+  const Stencil& s = problem.stencil;
+  for (std::size_t b = 0; b < w.pressure_jump.size(); ++b) {
+    const bool given = problem.conditions.kind[b] == FaceKind::pressure;
+    const int cell = s.owner[b + static_cast<std::size_t>(s.internal_faces)];
+    w.pressure_jump[b] = given ? w.boundary.pressure[b] - w.pressure[cell] : 0.0;
+  }
+  gradient(s, problem.pressure_gradient, w.pressure, w.pressure_jump, w.pressure_slope);
+}
+
 /// C(u), ε u and the gradients of the velocity in hand.
 void evaluate_cells(const Step& step, WindowFields& w) {
   const FluidProblem& problem = step.problem;
@@ -33,9 +45,7 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   const auto share = pressure_share(step, w);
   const Stencil& s = problem.stencil;
   boundary_jump(s, problem.conditions, w.boundary.velocity, w.velocity, w.jump);
-  if (problem.numerics.convection != Convection::upwind || !s.orthogonal) {
-    gradient(s, problem.gradient, w.velocity, w.jump, w.velocity_gradient);
-  }
+  gradient(s, problem.gradient, w.velocity, w.jump, w.velocity_gradient);
   transport_force(s, w.momentum.faces, problem.numerics.convection, w.velocity, w.jump,
                   w.velocity_gradient, w.force);
   for (int cell = 0; cell < s.cells; ++cell) {
@@ -46,12 +56,7 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   boundary_jump(s, problem.conditions, w.boundary.superficial, w.superficial, w.jump);
   gradient(s, problem.gradient, w.superficial, w.jump, w.superficial_gradient);
   if (s.orthogonal) return;
-  for (std::size_t b = 0; b < w.pressure_jump.size(); ++b) {
-    const bool given = problem.conditions.kind[b] == FaceKind::pressure;
-    const int cell = s.owner[b + static_cast<std::size_t>(s.internal_faces)];
-    w.pressure_jump[b] = given ? w.boundary.pressure[b] - w.pressure[cell] : 0.0;
-  }
-  gradient(s, problem.pressure_gradient, w.pressure, w.pressure_jump, w.pressure_slope);
+  evaluate_pressure_slope(problem, w);
 }
 
 /// Pressure for the source in hand, and the flux that it drives.
@@ -62,6 +67,27 @@ void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport&
                                       problem.numerics.pressure_tolerance);
   std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
+}
+
+void evaluate_explicit_flux(const FluidProblem& problem, std::span<const double> last_flux,
+                            WindowFields& w) {
+  explicit_flux(
+      problem.stencil, problem.conditions, w.boundary, w.faces,
+      {w.specific_force, w.superficial, w.superficial_gradient, last_flux, w.pressure_slope},
+      w.explicit_part);
+}
+
+/// Pressure and fluxes; on a non-orthogonal mesh again with the slope of the pressure just found.
+void solve_fluxes(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
+  evaluate_explicit_flux(problem, w.flux, w);
+  if (problem.stencil.orthogonal) return solve_continuity(problem, w, report);
+  std::ranges::copy(w.flux, w.flux_before.begin());
+  solve_continuity(problem, w, report);
+  for (int again = 0; again < problem.numerics.non_orthogonal_correctors; ++again) {
+    evaluate_pressure_slope(problem, w);
+    evaluate_explicit_flux(problem, w.flux_before, w);
+    solve_continuity(problem, w, report);
+  }
 }
 
 double largest(std::span<const double> values) {
@@ -125,6 +151,8 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
     problem.pressure_gradient =
         gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, true));
   }
+  if (!problem.stencil.few_faces.empty())
+    problem.cell_balance = cell_balance_coefficients(problem.stencil);
   if (problem.continuity == Continuity::legacy) {
     for (const FluidRegion& region : problem.regions.list) {
       if (region.open) continue;
@@ -214,12 +242,10 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   evaluate_cells(step, w);
-  explicit_flux(s, problem.conditions, w.boundary, w.faces,
-                {w.specific_force, w.superficial, w.superficial_gradient, w.flux, w.pressure_slope},
-                w.explicit_part);
   if (problem.continuity == Continuity::conservative) {
-    solve_continuity(problem, w, report);
+    solve_fluxes(problem, w, report);
   } else {
+    evaluate_explicit_flux(problem, w.flux, w);
     solve_legacy_continuity(step, w, report);
   }
   if (last) close(step, w, report);
@@ -228,6 +254,12 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
+  if (s.few_faces.empty()) return;
+  balance_cells(s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time,
+                problem.cell_balance,
+                {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux, w.pressure_slope,
+                 w.force, w.velocity_before},
+                w.velocity, w.closing_gradient);
 }
 
 void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
@@ -250,7 +282,7 @@ void predict(const Step& step, WindowFields& w, FluidReport& report) {
   std::swap(w.velocity, w.velocity_before);
   report.predictor_iterations += predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
                                                   w.closing_gradient, w.predictor, w.velocity);
-  if (rebuilt_share(s) == 1) return;
+  if (s.uniform) return;  // no face value of the flux enters
   for (int cell = 0; cell < s.cells; ++cell)
     w.superficial[cell] = step.solids.voidage[cell] * w.velocity[cell];
   predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);

@@ -28,6 +28,7 @@ struct FluidProblem {
   std::vector<Vector3> gradient;           ///< least-squares coefficients of velocities, one a side
   std::vector<Vector3> pressure_gradient;  ///< of the pressure; empty on orthogonal meshes
   std::vector<Vector3> reconstruction;     ///< one a side
+  std::vector<Vector3> cell_balance;       ///< one a side; empty without cells of few faces
 };
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh);
@@ -46,12 +47,13 @@ struct WindowFields {
   MomentumSolver predictor;
   std::unique_ptr<PressureSolver> pressure_solver;
 
-  std::vector<double> storage;     ///< ρ V dε/dt [kg/s]
-  std::vector<double> source;      ///< right-hand side of continuity [m³/s]
-  std::vector<double> old_flux;    ///< φ^n [m³/s], one a face
-  std::vector<double> convecting;  ///< Φ [kg/s] at the step's end, extrapolated; time: bdf2 only
-  std::vector<double> ones;        ///< χ of pressure model b; empty with model a
-  std::vector<double> flux;        ///< φ of the last corrector [m³/s], one a face
+  std::vector<double> storage;      ///< ρ V dε/dt [kg/s]
+  std::vector<double> source;       ///< right-hand side of continuity [m³/s]
+  std::vector<double> old_flux;     ///< φ^n [m³/s], one a face
+  std::vector<double> convecting;   ///< Φ [kg/s] at the step's end, extrapolated; time: bdf2 only
+  std::vector<double> ones;         ///< χ of pressure model b; empty with model a
+  std::vector<double> flux;         ///< φ of the last corrector [m³/s], one a face
+  std::vector<double> flux_before;  ///< φ from which a corrector started [m³/s], one a face
   std::vector<double> explicit_part;  ///< [m³/s], one a face
   std::vector<double> mass_flux;      ///< Φ [kg/s], one a face
   std::vector<double> pressure;       ///< p − level [Pa]
@@ -73,7 +75,6 @@ struct WindowFields {
   std::vector<double> face_scale;         ///< one a face: 1, or 1/ε_f
   std::vector<double> face_voidage;       ///< one a face
   std::vector<double> interstitial_flux;  ///< Λ/ρ [m³/s], one a face
-  std::vector<double> flux_before;        ///< one a face
   std::vector<Vector3> voidage_gradient;
   std::vector<Vector3> interstitial;  ///< u rebuilt from Λ
 };

@@ -154,7 +154,8 @@ struct FluidNumerics {
   TimeScheme time = TimeScheme::euler;
   double courant_limit = 5;  ///< [-] largest of any cell in an inner step
   int correctors = 2;
-  double pressure_tolerance = 1e-6;  ///< relative residual of the pressure equation [-]
+  int non_orthogonal_correctors = 1;  ///< in each corrector, on meshes that are not orthogonal
+  double pressure_tolerance = 1e-6;   ///< relative residual of the pressure equation [-]
   LinearSolverChoice solver = LinearSolverChoice::automatic;
   LegacySettings legacy;
 };

@@ -172,8 +172,15 @@ void describe(Visit& visit, FluidNumerics& numerics) {
         numerics.courant_limit);
   visit({.name = "correctors",
          .range = {.lower = 1, .upper = 100},
-         .meaning = "Pressure corrections in a window."},
+         .meaning = "Pressure corrections in a step. Two keep the order of the pressure, three on "
+                    "tetrahedra and prisms."},
         numerics.correctors);
+  visit(
+      {.name = "non_orthogonal_correctors",
+       .range = {.lower = 0, .upper = 100},
+       .meaning = "Repetitions of each pressure correction on a mesh that is not orthogonal, with "
+                  "the part of the pressure gradient along the faces renewed."},
+      numerics.non_orthogonal_correctors);
   visit({.name = "pressure_tolerance",
          .range = {.lower = 0, .upper = 1, .without_lower = true, .without_upper = true},
          .meaning = "Relative residual of the pressure equation. Mass is conserved at any value; "

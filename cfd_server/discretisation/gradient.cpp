@@ -21,7 +21,43 @@ Matrix3 inverse_on_range(const Matrix3& matrix) {
 }
 
 /// From the cell's centre to where the other value stands.
-Vector3 reach(const Stencil& s, int side) { return s.side_sign[side] * s.delta[s.side_face[side]]; }
+Vector3 reach(const Stencil& s, int side) {
+  return static_cast<double>(s.side_sign[side]) * s.delta[s.side_face[side]];
+}
+
+template <class Coefficients>
+void vector_gradient(const Stencil& s, const Coefficients& coefficients,
+                     std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
+                     std::span<Matrix3> out) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
+    Matrix3 sum = Matrix3::Zero();
+    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
+      const int other = s.side_other[side];
+      const Vector3 jump = other >= 0 ? Vector3(field[other] - field[cell])
+                                      : boundary_jump[s.side_face[side] - s.internal_faces];
+      sum.noalias() += jump * coefficients[side].transpose();
+    }
+    out[cell] = sum;
+  }
+}
+
+template <class Coefficients>
+void scalar_gradient(const Stencil& s, const Coefficients& coefficients,
+                     std::span<const double> field, std::span<const double> boundary_jump,
+                     std::span<Vector3> out) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
+    Vector3 sum = Vector3::Zero();
+    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
+      const int other = s.side_other[side];
+      const double jump = other >= 0 ? field[other] - field[cell]
+                                     : boundary_jump[s.side_face[side] - s.internal_faces];
+      sum += jump * coefficients[side];
+    }
+    out[cell] = sum;
+  }
+}
 
 }  // namespace
 
@@ -51,31 +87,18 @@ std::vector<Vector3> gradient_coefficients(const Stencil& s,
 void gradient(const Stencil& s, std::span<const Vector3> coefficients,
               std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
               std::span<Matrix3> out) {
-  for (int cell = 0; cell < s.cells; ++cell) {
-    Matrix3 sum = Matrix3::Zero();
-    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
-      const int other = s.side_other[side];
-      const Vector3 jump = other >= 0 ? Vector3(field[other] - field[cell])
-                                      : boundary_jump[s.side_face[side] - s.internal_faces];
-      sum.noalias() += jump * coefficients[side].transpose();
-    }
-    out[cell] = sum;
-  }
+  vector_gradient(s, coefficients, field, boundary_jump, out);
+}
+
+void gradient(const Stencil& s, const AxisVectors& coefficients, std::span<const Vector3> field,
+              std::span<const Vector3> boundary_jump, std::span<Matrix3> out) {
+  vector_gradient(s, coefficients, field, boundary_jump, out);
 }
 
 void gradient(const Stencil& s, std::span<const Vector3> coefficients,
               std::span<const double> field, std::span<const double> boundary_jump,
               std::span<Vector3> out) {
-  for (int cell = 0; cell < s.cells; ++cell) {
-    Vector3 sum = Vector3::Zero();
-    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
-      const int other = s.side_other[side];
-      const double jump = other >= 0 ? field[other] - field[cell]
-                                     : boundary_jump[s.side_face[side] - s.internal_faces];
-      sum += jump * coefficients[side];
-    }
-    out[cell] = sum;
-  }
+  scalar_gradient(s, coefficients, field, boundary_jump, out);
 }
 
 }  // namespace fluxpact

@@ -24,6 +24,10 @@ void gradient(const Stencil& stencil, std::span<const Vector3> coefficients,
               std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
               std::span<Matrix3> out);
 
+void gradient(const Stencil& stencil, const AxisVectors& coefficients,
+              std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
+              std::span<Matrix3> out);
+
 /// Gradient of a cell scalar. `boundary_jump`: φ_b − φ_P for each boundary face.
 void gradient(const Stencil& stencil, std::span<const Vector3> coefficients,
               std::span<const double> field, std::span<const double> boundary_jump,

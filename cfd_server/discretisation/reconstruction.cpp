@@ -21,23 +21,39 @@ std::vector<Vector3> reconstruction_coefficients(const Stencil& s) {
   return coefficients;
 }
 
-void reconstruct(const Stencil& s, std::span<const Vector3> coefficients,
-                 std::span<const double> flux, std::span<const Matrix3> gradient,
-                 std::span<Vector3> out) {
+namespace {
+
+template <class Coefficients>
+void rebuild(const Stencil& s, const Coefficients& coefficients, std::span<const double> flux,
+             std::span<const Matrix3> gradient, std::span<Vector3> out) {
   // A and φ change sign together when seen from the neighbour, so the sign of a side drops out.
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 sum = Vector3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int f = s.side_face[side];
       double part = flux[f];
       if (!s.centred) {
-        const Vector3& offset = s.side_sign[side] > 0 ? s.from_owner[f] : s.from_neighbour[f];
+        const Vector3 offset = s.side_sign[side] > 0 ? s.from_owner[f] : s.from_neighbour[f];
         part -= s.area[f].dot(gradient[cell] * offset);
       }
       sum += part * coefficients[side];
     }
     out[cell] = sum;
   }
+}
+
+}  // namespace
+
+void reconstruct(const Stencil& s, std::span<const Vector3> coefficients,
+                 std::span<const double> flux, std::span<const Matrix3> gradient,
+                 std::span<Vector3> out) {
+  rebuild(s, coefficients, flux, gradient, out);
+}
+
+void reconstruct(const Stencil& s, const AxisVectors& coefficients, std::span<const double> flux,
+                 std::span<const Matrix3> gradient, std::span<Vector3> out) {
+  rebuild(s, coefficients, flux, gradient, out);
 }
 
 }  // namespace fluxpact

@@ -20,5 +20,8 @@ std::vector<Vector3> reconstruction_coefficients(const Stencil& stencil);
 void reconstruct(const Stencil& stencil, std::span<const Vector3> coefficients,
                  std::span<const double> flux, std::span<const Matrix3> gradient,
                  std::span<Vector3> out);
+void reconstruct(const Stencil& stencil, const AxisVectors& coefficients,
+                 std::span<const double> flux, std::span<const Matrix3> gradient,
+                 std::span<Vector3> out);
 
 }  // namespace fluxpact

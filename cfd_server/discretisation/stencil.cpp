@@ -1,5 +1,7 @@
 #include "cfd_server/discretisation/stencil.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,11 @@ namespace {
 
 void add_faces(const Mesh& mesh, Stencil& s) {
   double largest_cross = 0;
+  std::vector<Vector3> areas, deltas, from_owners, from_neighbours;
+  for (auto* vectors : {&areas, &s.cross, &deltas, &from_owners, &from_neighbours})
+    vectors->reserve(static_cast<std::size_t>(s.faces));
+  for (auto* values : {&s.area_size, &s.weight, &s.conductance})
+    values->reserve(static_cast<std::size_t>(s.faces));
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
     const Vector3& area = mesh.face_areas[f];
@@ -25,19 +32,24 @@ void add_faces(const Mesh& mesh, Stencil& s) {
           mesh.owner[f]);
     }
     const double conductance = area.squaredNorm() / projected;
-    s.area.push_back(area);
+    areas.push_back(area);
     s.area_size.push_back(area.norm());
     s.weight.push_back(internal ? from_owner.dot(area) / projected : 1.0);
     s.conductance.push_back(conductance);
     s.cross.emplace_back(area - conductance * delta);
-    s.delta.push_back(delta);
-    s.from_owner.push_back(from_owner);
-    if (internal) s.from_neighbour.emplace_back(from_owner - delta);
+    deltas.push_back(delta);
+    from_owners.push_back(from_owner);
+    if (internal) from_neighbours.emplace_back(from_owner - delta);
     largest_cross = std::max(largest_cross, s.cross.back().norm() / area.norm());
   }
   // A lattice is recognised up to a relative 1e-6 of its spacing; what remains of k is rounding.
   s.orthogonal = mesh.lattice.has_value() || largest_cross < 1e-12;
-  if (s.orthogonal) s.cross.clear();
+  if (s.orthogonal) s.cross = {};
+  const bool lattice = mesh.lattice.has_value();
+  s.area = AxisVectors(std::move(areas), lattice);
+  s.delta = AxisVectors(std::move(deltas), lattice);
+  s.from_owner = AxisVectors(std::move(from_owners), lattice);
+  s.from_neighbour = AxisVectors(std::move(from_neighbours), lattice);
 }
 
 void add_sides(const Mesh& mesh, Stencil& s) {
@@ -50,7 +62,7 @@ void add_sides(const Mesh& mesh, Stencil& s) {
   s.side_other.resize(sides);
   s.side_sign.resize(sides);
   std::vector<int> next(s.side_offsets.begin(), s.side_offsets.end() - 1);
-  const auto add = [&](int cell, int face, int other, double sign) {
+  const auto add = [&](int cell, int face, int other, std::int8_t sign) {
     const int side = next[cell]++;
     s.side_face[side] = face;
     s.side_other[side] = other;
@@ -58,8 +70,8 @@ void add_sides(const Mesh& mesh, Stencil& s) {
   };
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
-    add(s.owner[f], f, internal ? s.neighbour[f] : -1, 1.0);
-    if (internal) add(s.neighbour[f], f, s.owner[f], -1.0);
+    add(s.owner[f], f, internal ? s.neighbour[f] : -1, 1);
+    if (internal) add(s.neighbour[f], f, s.owner[f], -1);
   }
 }
 
@@ -101,6 +113,12 @@ Stencil make_stencil(const Mesh& mesh) {
   s.centred = mesh.lattice.has_value();
   s.uniform = mesh.lattice && has_equal_cells(*mesh.lattice);
   return s;
+}
+
+int threads_for(int wanted, int cells) {
+  constexpr int fewest_cells = 10000;
+  const int most = wanted > 0 ? wanted : omp_get_max_threads();
+  return std::clamp(cells / fewest_cells, 1, most);
 }
 
 }  // namespace fluxpact

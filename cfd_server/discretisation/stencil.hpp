@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cfd_server/discretisation/axis_vectors.hpp"
 #include "proto/base/vector.hpp"
 #include "proto/mesh/mesh.hpp"
 
@@ -22,23 +23,25 @@ struct Stencil {
   std::vector<int> neighbour;     ///< internal faces
   std::vector<double> volume;     ///< [m³]
   std::vector<Vector3> centre;    ///< [m] of cells
-  std::vector<Vector3> area;      ///< [m²]
+  AxisVectors area;               ///< [m²]
   std::vector<double> area_size;  ///< [m²] |A|
   std::vector<double>
       weight;  ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
   std::vector<double> conductance;  ///< g = |A|²/(A·d) [m]
   std::vector<Vector3>
-      cross;  ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
-  std::vector<Vector3> delta;       ///< d [m]
-  std::vector<Vector3> from_owner;  ///< x_f − x_P [m]
-  std::vector<Vector3>
-      from_neighbour;  ///< x_f − x_N [m], at N's side of a periodic pair; internal faces
+      cross;          ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
+  AxisVectors delta;  ///< d [m]
+  AxisVectors from_owner;      ///< x_f − x_P [m]
+  AxisVectors from_neighbour;  ///< x_f − x_N [m], at N's side of a periodic pair; internal faces
 
   // The sides of each cell. A cell that is its own periodic neighbour has both sides of that face.
   std::vector<int> side_offsets;  ///< CSR: cells + 1 entries
   std::vector<int> side_face;
-  std::vector<int> side_other;    ///< the cell across, −1 at the boundary
-  std::vector<double> side_sign;  ///< +1 where the cell owns the face, −1 where it is the neighbour
+  std::vector<int> side_other;  ///< the cell across, −1 at the boundary
+  std::vector<std::int8_t>
+      side_sign;  ///< +1 where the cell owns the face, −1 where it is the neighbour
+
+  int threads = 1;  ///< that share each loop over cells or faces
 
   /// One a cell: 1 where the cell has too few faces for its velocity to be rebuilt from their
   /// fluxes (tetrahedra, prisms, pyramids: fewer than two for each component). Empty if there is
@@ -55,5 +58,9 @@ struct Stencil {
 
 /// Throws ConfigError naming the face if d·A is not positive: such a mesh has no two-point flux.
 Stencil make_stencil(const Mesh& mesh);
+
+/// Threads that pay on a mesh of this size: those wanted (0: all cores), but not less than some
+/// thousands of cells each.
+int threads_for(int wanted, int cells);
 
 }  // namespace fluxpact

@@ -74,8 +74,10 @@ void add_transposed_stress(const Stencil& s, const TransportCoefficients& c,
 
 }  // namespace
 
-void finish_coefficients(TransportCoefficients& c) {
-  for (std::size_t f = 0; f < c.mass_flux.size(); ++f) {
+void finish_coefficients(TransportCoefficients& c, int threads) {
+  const int faces = static_cast<int>(c.mass_flux.size());
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int f = 0; f < faces; ++f) {
     c.into_owner[f] = std::max(-c.mass_flux[f], 0.0) + c.diffusion[f];
     c.into_neighbour[f] = std::max(c.mass_flux[f], 0.0) + c.diffusion[f];
   }

@@ -24,7 +24,7 @@ struct TransportCoefficients {
 };
 
 /// Fill into_owner and into_neighbour from mass_flux and diffusion.
-void finish_coefficients(TransportCoefficients& coefficients);
+void finish_coefficients(TransportCoefficients& coefficients, int threads = 1);
 
 /// force [N] = Σ_f [ a (u_N − u_P) − F (u_higher − u_upwind) + μ ε_f (∇u)_f·k
 ///                   + μ ε_f ((∇u)ᵀ_f − 2/3 (∇·u)_f)·A ] for each cell.

@@ -57,8 +57,10 @@ void start_hypre() {
   }
 }
 
-OneThread::OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
-OneThread::~OneThread() { omp_set_num_threads(before_); }
+HypreThreads::HypreThreads(int threads) : before_(omp_get_max_threads()) {
+  omp_set_num_threads(threads);
+}
+HypreThreads::~HypreThreads() { omp_set_num_threads(before_); }
 
 void check_hypre(const char* call) {
   const int error = HYPRE_GetError();

@@ -7,13 +7,14 @@ namespace fluxpact {
 /// that somebody else started is left to them to end.
 void start_hypre();
 
-/// Holds OpenMP to one thread while hypre works: its sums must not depend on the number of cores.
-class OneThread {
+/// Sets the number of threads for what hypre does meanwhile (Debian's hypre knows none; one built
+/// with OpenMP does).
+class HypreThreads {
  public:
-  OneThread();
-  ~OneThread();
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
+  explicit HypreThreads(int threads);
+  ~HypreThreads();
+  HypreThreads(const HypreThreads&) = delete;
+  HypreThreads& operator=(const HypreThreads&) = delete;
 
  private:
   int before_;

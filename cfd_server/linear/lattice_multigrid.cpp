@@ -1,19 +1,26 @@
 #include "cfd_server/linear/lattice_multigrid.hpp"
 
-#include <HYPRE_krylov.h>
 #include <HYPRE_struct_ls.h>
 #include <mpi.h>
 
 #include <array>
+#include <cmath>
 
 #include "cfd_server/linear/hypre_session.hpp"
+#include "cfd_server/linear/preconditioned_gradients.hpp"
 
 namespace fluxpact {
 namespace {
 
+/// Below this hypre's many small loops lose more by starting threads than they gain.
+constexpr int fewest_cells_for_threads = 200000;
+
 class LatticeMultigrid final : public PressureSolver {
  public:
-  LatticeMultigrid(const Lattice& lattice, const Stencil& stencil) : stencil_(stencil) {
+  LatticeMultigrid(const Lattice& lattice, const Stencil& stencil)
+      : stencil_(stencil),
+        gradients_(stencil),
+        threads_(stencil.cells < fewest_cells_for_threads ? 1 : stencil.threads) {
     start_hypre();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       size_[axis] = static_cast<int>(lattice.nodes[axis].size()) - 1;
@@ -22,29 +29,12 @@ class LatticeMultigrid final : public PressureSolver {
       wrap_[axis] = lattice.periodic[axis] && size_[axis] > 2 ? size_[axis] : 0;
     }
     place_faces();
-    HYPRE_StructGridCreate(MPI_COMM_SELF, 3, &grid_);
-    HYPRE_StructGridSetExtents(grid_, lower_.data(), upper_.data());
-    HYPRE_StructGridSetPeriodic(grid_, wrap_.data());
-    HYPRE_StructGridAssemble(grid_);
-    HYPRE_StructStencilCreate(3, 4, &shape_);
-    std::array<std::array<int, 3>, 4> offsets{{{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    for (int entry = 0; entry < 4; ++entry) {
-      HYPRE_StructStencilSetElement(shape_, entry, offsets[static_cast<std::size_t>(entry)].data());
-    }
-    HYPRE_StructMatrixCreate(MPI_COMM_SELF, grid_, shape_, &matrix_);
-    HYPRE_StructMatrixSetSymmetric(matrix_, 1);
-    HYPRE_StructMatrixInitialize(matrix_);
-    for (auto* vector : {&rhs_, &solution_}) {
-      HYPRE_StructVectorCreate(MPI_COMM_SELF, grid_, vector);
-      HYPRE_StructVectorInitialize(*vector);
-      HYPRE_StructVectorAssemble(*vector);
-    }
-    values_.assign(4 * static_cast<std::size_t>(stencil.cells), 0.0);
-    check_hypre("the set-up of the lattice");
+    create_grid();
+    values_.assign(static_cast<std::size_t>(stencil.cells), 0.0);
   }
 
   ~LatticeMultigrid() override {
-    destroy_solver();
+    destroy_cycle();
     HYPRE_StructVectorDestroy(solution_);
     HYPRE_StructVectorDestroy(rhs_);
     HYPRE_StructMatrixDestroy(matrix_);
@@ -55,37 +45,44 @@ class LatticeMultigrid final : public PressureSolver {
   LatticeMultigrid& operator=(const LatticeMultigrid&) = delete;
 
   void setup(const PressureMatrix& matrix) override {
-    const OneThread one_thread;
-    for (int cell = 0; cell < stencil_.cells; ++cell) {
-      double* entry = &values_[4 * static_cast<std::size_t>(cell)];
-      entry[0] = matrix.diagonal[cell];
-      entry[1] = entry[2] = entry[3] = 0;
+    const HypreThreads hypre_threads(threads_);
+    current_ = &matrix;
+    std::array<double, 3> mean{};  // coupling along each axis, what multigrid coarsens by
+    for (int entry = 0; entry < 4; ++entry) {
+      if (entry == 0) {
+        std::ranges::copy(matrix.diagonal, values_.begin());
+      } else {
+        std::ranges::fill(values_, 0.0);
+        double& sum = mean[static_cast<std::size_t>(entry - 1)];
+        for (int f = 0; f < stencil_.internal_faces; ++f) {
+          if (place_[f] < 0 || place_[f] % 4 != entry) continue;
+          values_[place_[f] / 4] -= matrix.coupling[f];
+          sum += matrix.coupling[f];
+        }
+      }
+      HYPRE_StructMatrixSetBoxValues(matrix_, lower_.data(), upper_.data(), 1, &entry,
+                                     values_.data());
     }
-    for (int f = 0; f < stencil_.internal_faces; ++f) {
-      if (place_[f] >= 0) values_[static_cast<std::size_t>(place_[f])] -= matrix.coupling[f];
-    }
-    std::array<int, 4> entries{0, 1, 2, 3};
-    HYPRE_StructMatrixSetBoxValues(matrix_, lower_.data(), upper_.data(), 4, entries.data(),
-                                   values_.data());
     HYPRE_StructMatrixAssemble(matrix_);
-    destroy_solver();
-    create_solver();
-    HYPRE_StructPCGSetup(solver_, matrix_, rhs_, solution_);
-    check_hypre("HYPRE_StructPCGSetup");
+    destroy_cycle();
+    create_cycle(mean);
+    HYPRE_StructPFMGSetup(cycle_, matrix_, rhs_, solution_);
+    check_hypre("HYPRE_StructPFMGSetup");
   }
 
   int iterate(std::span<const double> rhs, std::span<double> x, double tolerance) override {
-    const OneThread one_thread;
-    // hypre takes its input as non-const, and leaves it alone.
-    HYPRE_StructVectorSetBoxValues(rhs_, lower_.data(), upper_.data(),
-                                   const_cast<double*>(rhs.data()));
-    HYPRE_StructVectorSetBoxValues(solution_, lower_.data(), upper_.data(), x.data());
-    HYPRE_StructPCGSetTol(solver_, tolerance);
-    HYPRE_StructPCGSolve(solver_, matrix_, rhs_, solution_);
-    int iterations = 0;
-    HYPRE_StructPCGGetNumIterations(solver_, &iterations);
-    HYPRE_StructVectorGetBoxValues(solution_, lower_.data(), upper_.data(), x.data());
-    check_hypre("HYPRE_StructPCGSolve");
+    constexpr int most_iterations = 500;
+    const HypreThreads hypre_threads(threads_);
+    const int iterations = gradients_.solve(
+        *current_, rhs, x, tolerance, most_iterations,
+        [&](std::span<const double> r, std::span<double> z) {
+          // hypre takes its input as non-const, and leaves it alone.
+          HYPRE_StructVectorSetBoxValues(rhs_, lower_.data(), upper_.data(),
+                                         const_cast<double*>(r.data()));
+          HYPRE_StructPFMGSolve(cycle_, matrix_, rhs_, solution_);
+          HYPRE_StructVectorGetBoxValues(solution_, lower_.data(), upper_.data(), z.data());
+        });
+    check_hypre("HYPRE_StructPFMGSolve");
     return iterations;
   }
 
@@ -107,34 +104,59 @@ class LatticeMultigrid final : public PressureSolver {
     }
   }
 
-  void create_solver() {
-    HYPRE_StructPFMGCreate(MPI_COMM_SELF, &preconditioner_);
-    HYPRE_StructPFMGSetMaxIter(preconditioner_, 1);
-    HYPRE_StructPFMGSetTol(preconditioner_, 0.0);
-    HYPRE_StructPFMGSetZeroGuess(preconditioner_);
-    HYPRE_StructPFMGSetNumPreRelax(preconditioner_, 1);
-    HYPRE_StructPFMGSetNumPostRelax(preconditioner_, 1);
+  void create_grid() {
+    HYPRE_StructGridCreate(MPI_COMM_SELF, 3, &grid_);
+    HYPRE_StructGridSetExtents(grid_, lower_.data(), upper_.data());
+    HYPRE_StructGridSetPeriodic(grid_, wrap_.data());
+    HYPRE_StructGridAssemble(grid_);
+    HYPRE_StructStencilCreate(3, 4, &shape_);
+    std::array<std::array<int, 3>, 4> offsets{{{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
+    for (int entry = 0; entry < 4; ++entry) {
+      HYPRE_StructStencilSetElement(shape_, entry, offsets[static_cast<std::size_t>(entry)].data());
+    }
+    HYPRE_StructMatrixCreate(MPI_COMM_SELF, grid_, shape_, &matrix_);
+    HYPRE_StructMatrixSetSymmetric(matrix_, 1);
+    HYPRE_StructMatrixInitialize(matrix_);
+    for (auto* vector : {&rhs_, &solution_}) {
+      HYPRE_StructVectorCreate(MPI_COMM_SELF, grid_, vector);
+      HYPRE_StructVectorInitialize(*vector);
+      HYPRE_StructVectorAssemble(*vector);
+    }
+    check_hypre("the set-up of the lattice");
+  }
+
+  /// One symmetric cycle from zero. PFMG coarsens the axis of the strongest coupling first: it is
+  /// given the mean couplings, because its own sums depend on the number of threads.
+  void create_cycle(const std::array<double, 3>& mean) {
+    HYPRE_StructPFMGCreate(MPI_COMM_SELF, &cycle_);
+    HYPRE_StructPFMGSetMaxIter(cycle_, 1);
+    HYPRE_StructPFMGSetTol(cycle_, 0.0);
+    HYPRE_StructPFMGSetZeroGuess(cycle_);
+    HYPRE_StructPFMGSetNumPreRelax(cycle_, 1);
+    HYPRE_StructPFMGSetNumPostRelax(cycle_, 1);
     // Conjugate gradients ask for a symmetric smoother. Symmetric red-black Gauss-Seidel (2) is the
     // best, but a period that is odd on some level has no two colours: then weighted Jacobi (1).
     const bool wraps = wrap_[0] + wrap_[1] + wrap_[2] > 0;
-    HYPRE_StructPFMGSetRelaxType(preconditioner_, wraps ? 1 : 2);
-    HYPRE_StructPFMGSetRAPType(preconditioner_, 0);
-    HYPRE_StructPCGCreate(MPI_COMM_SELF, &solver_);
-    HYPRE_StructPCGSetTwoNorm(solver_, 1);
-    HYPRE_StructPCGSetMaxIter(solver_, 500);
-    HYPRE_StructPCGSetPrecond(solver_, HYPRE_StructPFMGSolve, HYPRE_StructPFMGSetup,
-                              preconditioner_);
+    HYPRE_StructPFMGSetRelaxType(cycle_, wraps ? 1 : 2);
+    if (wraps) HYPRE_StructPFMGSetJacobiWeight(cycle_, 2.0 / 3.0);
+    HYPRE_StructPFMGSetRAPType(cycle_, 0);
+    const double strongest = std::max({mean[0], mean[1], mean[2]});
+    std::array<double, 3> spacing{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      spacing[axis] = mean[axis] > 0 ? std::sqrt(strongest / mean[axis]) : 1e150;
+    if (strongest == 0) spacing = {1, 1, 1};
+    HYPRE_StructPFMGSetDxyz(cycle_, spacing.data());
   }
 
-  void destroy_solver() {
-    if (solver_ == nullptr) return;
-    HYPRE_StructPCGDestroy(solver_);
-    HYPRE_StructPFMGDestroy(preconditioner_);
-    solver_ = nullptr;
-    preconditioner_ = nullptr;
+  void destroy_cycle() {
+    if (cycle_ != nullptr) HYPRE_StructPFMGDestroy(cycle_);
+    cycle_ = nullptr;
   }
 
   const Stencil& stencil_;
+  PreconditionedGradients gradients_;
+  int threads_;
+  const PressureMatrix* current_ = nullptr;
   std::array<int, 3> size_{};
   std::array<int, 3> lower_{};
   std::array<int, 3> upper_{};
@@ -146,8 +168,7 @@ class LatticeMultigrid final : public PressureSolver {
   HYPRE_StructMatrix matrix_ = nullptr;
   HYPRE_StructVector rhs_ = nullptr;
   HYPRE_StructVector solution_ = nullptr;
-  HYPRE_StructSolver preconditioner_ = nullptr;
-  HYPRE_StructSolver solver_ = nullptr;
+  HYPRE_StructSolver cycle_ = nullptr;
 };
 
 }  // namespace

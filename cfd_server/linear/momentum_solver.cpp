@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cfd_server/linear/bicgstab.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -25,6 +26,7 @@ MomentumSolver::MomentumSolver(const Stencil& stencil, std::vector<SlipFace> sli
 }
 
 void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
+#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
   for (int cell = 0; cell < stencil_.cells; ++cell) {
     Vector3 sum = diagonal[cell] * x[cell];
     for (int side = stencil_.side_offsets[cell]; side < stencil_.side_offsets[cell + 1]; ++side) {
@@ -42,7 +44,8 @@ int MomentumSolver::solve(double scale_squared) {
   std::ranges::fill(change, Vector3::Zero());
   const BicgstabOutcome outcome = solve_bicgstab(
       [this](const std::vector<Vector3>& x, std::vector<Vector3>& y) { multiply(x, y); }, diagonal,
-      tolerance * tolerance * scale_squared, most_iterations, residual, change, work_);
+      stencil_.threads, tolerance * tolerance * scale_squared, most_iterations, residual, change,
+      work_);
   if (!outcome.converged) {
     throw NumericsError(
         "fluid: the momentum predictor has the relative residual {} after {} iterations; shorten "

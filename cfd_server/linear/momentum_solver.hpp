@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cfd_server/discretisation/stencil.hpp"
-#include "cfd_server/linear/bicgstab.hpp"
+#include "cfd_server/linear/bicgstab_work.hpp"
 
 namespace fluxpact {
 

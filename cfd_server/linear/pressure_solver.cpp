@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cfd_server/linear/blocked_sum.hpp"
 #include "cfd_server/linear/conjugate_gradient.hpp"
 #include "proto/base/errors.hpp"
 #ifdef FLUXPACT_HAS_HYPRE
@@ -11,22 +12,29 @@
 #endif
 
 namespace fluxpact {
+namespace {
+
+struct Squares {
+  double residual = 0;
+  double scale = 0;
+
+  Squares& operator+=(const Squares& other) {
+    residual += other.residual;
+    scale += other.scale;
+    return *this;
+  }
+};
+
+}  // namespace
 
 Residual residual_of(const Stencil& s, const PressureMatrix& matrix, std::span<const double> rhs,
                      std::span<const double> x) {
-  double squared = 0;
-  double scale = 0;
-  for (int cell = 0; cell < s.cells; ++cell) {
-    double sum = rhs[cell] - matrix.diagonal[cell] * x[cell];
-    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
-      const int other = s.side_other[side];
-      if (other >= 0 && other != cell) sum += matrix.coupling[s.side_face[side]] * x[other];
-    }
-    squared += sum * sum;
+  const auto squares = blocked_sum<Squares>(s.cells, s.threads, [&](int cell) {
+    const double residual = rhs[cell] - row_times(s, matrix, x, cell);
     const double size = 2 * matrix.diagonal[cell] * std::abs(x[cell]) + std::abs(rhs[cell]);
-    scale += size * size;
-  }
-  return {std::sqrt(squared), std::sqrt(scale)};
+    return Squares{residual * residual, size * size};
+  });
+  return {std::sqrt(squares.residual), std::sqrt(squares.scale)};
 }
 
 std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice,
@@ -52,9 +60,8 @@ int solve_pressure(PressureSolver& solver, const Stencil& stencil, const Pressur
                    std::span<const double> rhs, std::span<double> x, double tolerance) {
   // Rounding of A x: a few units in the last place of its terms.
   constexpr double rounding = 1e-15;
-  double norm_of_rhs = 0;
-  for (const double value : rhs) norm_of_rhs += value * value;
-  norm_of_rhs = std::sqrt(norm_of_rhs);
+  const double norm_of_rhs = std::sqrt(blocked_sum<double>(
+      stencil.cells, stencil.threads, [&](int cell) { return rhs[cell] * rhs[cell]; }));
   if (norm_of_rhs == 0) {
     std::ranges::fill(x, 0.0);
     return 0;

@@ -20,8 +20,18 @@ struct PressureMatrix {
   std::vector<double> coupling;  ///< one an internal face, >= 0
 };
 
-/// r = b − A x, and |A||x| + |b| as the scale of its rounding. A cell that is its own neighbour
-/// couples with nothing.
+/// (A x)_P. A cell that is its own neighbour couples with nothing.
+inline double row_times(const Stencil& s, const PressureMatrix& matrix, std::span<const double> x,
+                        int cell) {
+  double sum = matrix.diagonal[cell] * x[cell];
+  for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
+    const int other = s.side_other[side];
+    if (other >= 0 && other != cell) sum -= matrix.coupling[s.side_face[side]] * x[other];
+  }
+  return sum;
+}
+
+/// r = b − A x, and |A||x| + |b| as the scale of its rounding.
 struct Residual {
   double norm = 0;
   double rounding_scale = 0;
@@ -32,6 +42,15 @@ Residual residual_of(const Stencil& stencil, const PressureMatrix& matrix,
 class PressureSolver {
  public:
   virtual ~PressureSolver() = default;
+
+  /// A window begins, or begins anew: what an attempt that was not committed left is forgotten.
+  virtual void begin_window() {}
+  /// The window in hand is committed.
+  virtual void commit() {}
+  /// Forget all windows before: the next one gives the same bits as in a new process.
+  virtual void forget() {}
+
+  /// The matrix stays where it is, unchanged, until the next set-up.
   virtual void setup(const PressureMatrix& matrix) = 0;
   /// Improve x until |b − A x| <= tolerance |b|. Returns the iterations.
   virtual int iterate(std::span<const double> rhs, std::span<double> x, double tolerance) = 0;

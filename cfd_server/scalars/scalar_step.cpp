@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cfd_server/discretisation/gradient.hpp"
+#include "cfd_server/linear/bicgstab.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -52,6 +53,7 @@ void evaluate_residual(const Stencil& s, const FluidStep& step, const ScalarInpu
 /// rounding.
 int solve(const Stencil& s, double tolerance, double size, const char* name, ScalarWork& w) {
   const auto multiply = [&](const std::vector<double>& x, std::vector<double>& y) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int cell = 0; cell < s.cells; ++cell) {
       double sum = w.diagonal[cell] * x[cell];
       for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
@@ -65,8 +67,8 @@ int solve(const Stencil& s, double tolerance, double size, const char* name, Sca
   for (const double value : w.residual) start += value * value;
   const double target = std::max(tolerance * tolerance * start, 1e-32 * size);
   std::ranges::fill(w.change, 0.0);
-  const BicgstabOutcome outcome =
-      solve_bicgstab(multiply, w.diagonal, target, most_iterations, w.residual, w.change, w.solver);
+  const BicgstabOutcome outcome = solve_bicgstab(multiply, w.diagonal, s.threads, target,
+                                                 most_iterations, w.residual, w.change, w.solver);
   if (!outcome.converged) {
     throw NumericsError(
         "fluid: the equation of '{}' has the relative residual {} after {} iterations; shorten "

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "cfd_server/discretisation/stencil.hpp"
-#include "cfd_server/linear/bicgstab.hpp"
+#include "cfd_server/linear/bicgstab_work.hpp"
 #include "cfd_server/scalars/flux_correction.hpp"
 #include "cfd_server/scalars/scalar_boundary.hpp"
 #include "proto/scene/scene.hpp"

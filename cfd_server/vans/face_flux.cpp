@@ -20,6 +20,7 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
                     const MomentumCoefficients& m, std::span<const double> voidage,
                     std::span<const double> pressure_share, const FluidState& old_state,
                     const TimeCoefficients& time, FaceCoefficients& c) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
     if (!internal && conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
@@ -47,6 +48,7 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
 void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
                    const BoundaryValues& values, const FaceCoefficients& c, const FaceFluxInput& in,
                    std::span<double> flux) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
     const int b = f - s.internal_faces;
@@ -77,6 +79,7 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
 
 void add_pressure_flux(const Stencil& s, const BoundaryValues& values, const FaceCoefficients& c,
                        std::span<const double> pressure, std::span<double> flux) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) {
     const double outside =
         f < s.internal_faces ? pressure[s.neighbour[f]] : values.pressure[f - s.internal_faces];
@@ -87,6 +90,7 @@ void add_pressure_flux(const Stencil& s, const BoundaryValues& values, const Fac
 void predict_flux(const Stencil& s, std::span<const double> old_flux,
                   std::span<const Vector3> superficial, std::span<const Vector3> old_superficial,
                   std::span<double> flux) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) {
     const int p = s.owner[f];
     const double w = s.weight[f];

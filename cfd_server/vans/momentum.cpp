@@ -1,6 +1,6 @@
 #include "cfd_server/vans/momentum.hpp"
 
-#include <algorithm>
+#include "cfd_server/linear/blocked_sum.hpp"
 
 namespace fluxpact {
 namespace {
@@ -19,6 +19,7 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
                ? stress(cell)
                : viscosity.of_boundary[f - s.internal_faces] * voidage[cell];
   };
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.internal_faces; ++f) {
     const double w = s.weight[f];
     faces.mass_flux[f] = flux[f];
@@ -31,7 +32,7 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
     faces.mass_flux[f] = fixed ? flux[f] : 0.0;
     faces.diffusion[f] = fixed ? boundary_stress(f) * s.conductance[f] : 0.0;
   }
-  finish_coefficients(faces);
+  finish_coefficients(faces, s.threads);
   for (int f = s.internal_faces; f < s.faces; ++f) {
     // A wall that fluid slips along holds the normal part of the velocity and a share of the rest:
     // it has a weight, but no gradient of its own.
@@ -39,6 +40,12 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
       faces.into_owner[f] = boundary_stress(f) * s.conductance[f];
     }
   }
+}
+
+/// Weight of what lies across a side of a cell [kg/s].
+double weight_of_side(const Stencil& s, const TransportCoefficients& faces, int side) {
+  const int f = s.side_face[side];
+  return s.side_sign[side] > 0 ? faces.into_owner[f] : faces.into_neighbour[f];
 }
 
 }  // namespace
@@ -60,12 +67,12 @@ void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
                        std::span<const double> convecting, const ViscosityFields& viscosity,
                        MomentumCoefficients& c) {
   assemble_faces(s, conditions, fluid, convecting, solids.voidage, viscosity, c.faces);
-  std::ranges::fill(c.transport, 0.0);
-  for (int f = 0; f < s.faces; ++f) {
-    c.transport[s.owner[f]] += c.faces.into_owner[f];
-    if (f < s.internal_faces) c.transport[s.neighbour[f]] += c.faces.into_neighbour[f];
-  }
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
+    double transport = 0;
+    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side)
+      transport += weight_of_side(s, c.faces, side);
+    c.transport[cell] = transport;
     const double mass = fluid.density * s.volume[cell] / time.step;
     c.inertia[cell] = mass * time.last * old_state.voidage[cell];
     Vector3 carried = c.inertia[cell] * old_state.velocity[cell];
@@ -84,25 +91,23 @@ int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
                      std::span<const double> pressure_share, std::span<const Vector3> force,
                      std::span<const Vector3> pressure_gradient, MomentumSolver& solver,
                      std::span<Vector3> velocity) {
-  double scale = 0;
-  for (int cell = 0; cell < s.cells; ++cell) {
+  const double scale = blocked_sum<double>(s.cells, s.threads, [&](int cell) {
     const double diagonal = c.inertia[cell] + c.drag[cell];
     solver.diagonal[cell] = diagonal + c.transport[cell];
     const Vector3 pressure_force = pressure_share[cell] * s.volume[cell] * pressure_gradient[cell];
     const Vector3 resisted = diagonal * velocity[cell];
     solver.residual[cell] = c.known[cell] + force[cell] - resisted - pressure_force;
     // Of all terms: in a fluid that starts from rest most of them vanish.
-    scale += c.known[cell].squaredNorm() + force[cell].squaredNorm() + resisted.squaredNorm() +
-             pressure_force.squaredNorm();
-  }
-  for (std::size_t side = 0; side < s.side_face.size(); ++side) {
-    const int f = s.side_face[side];
-    solver.weight[side] = s.side_other[side] < 0  ? 0.0
-                          : s.side_sign[side] > 0 ? c.faces.into_owner[f]
-                                                  : c.faces.into_neighbour[f];
-  }
+    return c.known[cell].squaredNorm() + force[cell].squaredNorm() + resisted.squaredNorm() +
+           pressure_force.squaredNorm();
+  });
+  const int sides = s.side_offsets.back();
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int side = 0; side < sides; ++side)
+    solver.weight[side] = s.side_other[side] < 0 ? 0.0 : weight_of_side(s, c.faces, side);
   for (SlipFace& face : solver.slip) face.weight = face.slipping * c.faces.into_owner[face.face];
   const int iterations = solver.solve(scale);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) velocity[cell] += solver.change[cell];
   return iterations;
 }
@@ -111,6 +116,7 @@ void close_momentum(const Stencil& s, const MomentumCoefficients& c,
                     std::span<const double> pressure_share, std::span<const Vector3> force,
                     std::span<const Vector3> velocity_before, std::span<const Vector3> velocity,
                     std::span<Vector3> pressure_gradient) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     pressure_gradient[cell] = (c.known[cell] + force[cell] +
                                c.transport[cell] * (velocity_before[cell] - velocity[cell]) -

@@ -1,23 +1,31 @@
 #include "cfd_server/vans/pressure_equation.hpp"
 
-#include <algorithm>
-
 namespace fluxpact {
+namespace {
+
+double scale_of(std::span<const double> face_scale, int face) {
+  return face_scale.empty() ? 1.0 : face_scale[face];
+}
+
+}  // namespace
 
 void assemble_pressure_matrix(const Stencil& s, const BoundaryConditions& conditions,
                               const FluidRegions& regions, const FaceCoefficients& c,
                               std::span<const double> face_scale, PressureMatrix& matrix) {
-  std::ranges::fill(matrix.diagonal, 0.0);
-  for (int f = 0; f < s.internal_faces; ++f) {
-    const double coupling = face_scale[f] * c.mobility[f] * s.conductance[f];
-    matrix.coupling[f] = coupling;
-    if (s.owner[f] == s.neighbour[f]) continue;
-    matrix.diagonal[s.owner[f]] += coupling;
-    matrix.diagonal[s.neighbour[f]] += coupling;
-  }
-  for (int f = s.internal_faces; f < s.faces; ++f) {
-    if (conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
-    matrix.diagonal[s.owner[f]] += face_scale[f] * c.mobility[f] * s.conductance[f];
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.internal_faces; ++f)
+    matrix.coupling[f] = scale_of(face_scale, f) * c.mobility[f] * s.conductance[f];
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
+    double sum = 0;
+    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
+      const int f = s.side_face[side];
+      const bool fixed =
+          f >= s.internal_faces && conditions.kind[f - s.internal_faces] != FaceKind::pressure;
+      if (!fixed && s.side_other[side] != cell)
+        sum += scale_of(face_scale, f) * c.mobility[f] * s.conductance[f];
+    }
+    matrix.diagonal[cell] = sum;
   }
   for (const FluidRegion& region : regions.list) {
     if (region.open) continue;
@@ -32,16 +40,17 @@ void assemble_pressure_rhs(const Stencil& s, const BoundaryValues& values,
                            const FaceCoefficients& c, std::span<const double> face_scale,
                            std::span<const double> source, std::span<const double> flux,
                            std::span<double> rhs) {
-  std::ranges::copy(source, rhs.begin());
-  for (int f = 0; f < s.internal_faces; ++f) {
-    const double part = face_scale[f] * flux[f];
-    rhs[s.owner[f]] -= part;
-    rhs[s.neighbour[f]] += part;
-  }
-  for (int f = s.internal_faces; f < s.faces; ++f) {
-    const double through_pressure =
-        c.mobility[f] * s.conductance[f] * values.pressure[f - s.internal_faces];
-    rhs[s.owner[f]] -= face_scale[f] * (flux[f] - through_pressure);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
+    double sum = source[cell];
+    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
+      const int f = s.side_face[side];
+      double part = flux[f];
+      if (f >= s.internal_faces)
+        part -= c.mobility[f] * s.conductance[f] * values.pressure[f - s.internal_faces];
+      sum -= s.side_sign[side] * scale_of(face_scale, f) * part;
+    }
+    rhs[cell] = sum;
   }
 }
 

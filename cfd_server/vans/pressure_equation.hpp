@@ -11,7 +11,7 @@
 
 namespace fluxpact {
 
-/// face_scale: s_f, one a face.
+/// face_scale: s_f, one a face; empty: 1.
 void assemble_pressure_matrix(const Stencil& stencil, const BoundaryConditions& conditions,
                               const FluidRegions& regions, const FaceCoefficients& coefficients,
                               std::span<const double> face_scale, PressureMatrix& matrix);

@@ -120,7 +120,7 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
   const Step step{problem, from, window, solids};
   const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
   if (turbulence) fields.viscosity = turbulence->prepare(from.velocity, fields.boundary);
-  open_step(step, time, fields);
+  open_step(step, time, fields, report);
   pre_correct(step, fields, report);
   if (progress) progress();
   predict(step, fields, report);
@@ -212,6 +212,7 @@ void VansSolver::start(std::span<const double> voidage) {
   if (self.scalars) self.scalars->start();
   if (self.turbulence) self.turbulence->start();
   self.has_candidate = false;
+  self.fields.pressure_solver->forget();
 }
 
 void VansSolver::advance(const Window& window, const SolidsInput& solids,
@@ -221,6 +222,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   self.has_candidate = false;
   check_window(problem.stencil, window, solids);
   self.report = {};
+  self.fields.pressure_solver->begin_window();
   update_boundary_values(problem.stencil, problem.conditions, solids.voidage, window.end(),
                          self.fields.boundary);
   const double courant =
@@ -258,10 +260,12 @@ void VansSolver::commit() {
   std::swap(impl_->committed, impl_->candidate);
   if (impl_->scalars) impl_->scalars->commit();
   if (impl_->turbulence) impl_->turbulence->commit();
+  impl_->fields.pressure_solver->commit();
   impl_->has_candidate = false;
 }
 
 void VansSolver::rollback() { impl_->has_candidate = false; }
+void VansSolver::forget_setup() { impl_->fields.pressure_solver->forget(); }
 
 std::span<const double> window_flux(const FluidState& state) {
   return state.means.face_flux.empty() ? state.face_flux : state.means.face_flux;

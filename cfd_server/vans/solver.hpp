@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cfd_server/vans/phase_seconds.hpp"
 #include "proto/mesh/mesh.hpp"
 #include "proto/participant/participant.hpp"
 #include "proto/scene/scene.hpp"
@@ -63,6 +64,7 @@ struct FluidReport {
   int legacy_iterations = 0;     ///< passes over the lagged mass source (continuity: legacy)
   double legacy_change = 0;  ///< last relative change of a flux where those passes ran out, else 0
   double closure_correction = 0;  ///< largest flux change by the closure over the largest flux [-]
+  PhaseSeconds seconds;
 };
 
 class FluidScalars;
@@ -83,6 +85,9 @@ class VansSolver {
   void advance(const Window& window, const SolidsInput& solids, const Progress& progress);
   void commit();
   void rollback();
+  /// The next window depends on the committed state only, not on the set-up of the linear solver
+  /// that earlier ones left: what goes on from here and what is restored here give the same bits.
+  void forget_setup();
 
   const FluidState& committed() const;
   const FluidState& candidate() const;

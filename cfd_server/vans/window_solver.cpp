@@ -48,6 +48,7 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   gradient(s, problem.gradient, w.velocity, w.jump, w.velocity_gradient);
   transport_force(s, w.momentum.faces, problem.numerics.convection, w.velocity, w.jump,
                   w.velocity_gradient, w.force);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     w.superficial[cell] = voidage[cell] * w.velocity[cell];
     w.specific_force[cell] =
@@ -62,37 +63,45 @@ void evaluate_cells(const Step& step, WindowFields& w) {
 /// Pressure for the source in hand, and the flux that it drives.
 void solve_continuity(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
   const Stencil& s = problem.stencil;
+  LapClock clock;
   assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
+  report.seconds.assembly += clock.lap();
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
+  report.seconds.pressure += clock.lap();
   std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
+  report.seconds.assembly += clock.lap();
 }
 
 void evaluate_explicit_flux(const FluidProblem& problem, std::span<const double> last_flux,
-                            WindowFields& w) {
+                            WindowFields& w, FluidReport& report) {
+  LapClock clock;
   explicit_flux(
       problem.stencil, problem.conditions, w.boundary, w.faces,
       {w.specific_force, w.superficial, w.superficial_gradient, last_flux, w.pressure_slope},
       w.explicit_part);
+  report.seconds.assembly += clock.lap();
 }
 
 /// Pressure and fluxes; on a non-orthogonal mesh again with the slope of the pressure just found.
 void solve_fluxes(const FluidProblem& problem, WindowFields& w, FluidReport& report) {
-  evaluate_explicit_flux(problem, w.flux, w);
+  evaluate_explicit_flux(problem, w.flux, w, report);
   if (problem.stencil.orthogonal) return solve_continuity(problem, w, report);
   std::ranges::copy(w.flux, w.flux_before.begin());
   solve_continuity(problem, w, report);
   for (int again = 0; again < problem.numerics.non_orthogonal_correctors; ++again) {
     evaluate_pressure_slope(problem, w);
-    evaluate_explicit_flux(problem, w.flux_before, w);
+    evaluate_explicit_flux(problem, w.flux_before, w, report);
     solve_continuity(problem, w, report);
   }
 }
 
-double largest(std::span<const double> values) {
+double largest(const Stencil& s, std::span<const double> values) {
+  const int count = static_cast<int>(values.size());
   double result = 0;
-  for (const double value : values) result = std::max(result, std::abs(value));
+#pragma omp parallel for schedule(static) num_threads(s.threads) reduction(max : result)
+  for (int i = 0; i < count; ++i) result = std::max(result, std::abs(values[i]));
   return result;
 }
 
@@ -102,6 +111,7 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
   const Stencil& s = problem.stencil;
   double change = 0;
   for (int pass = 0; pass < problem.numerics.legacy.iterations; ++pass) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int f = 0; f < s.faces; ++f) w.interstitial_flux[f] = w.flux[f] * w.face_scale[f];
     reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient,
                 w.interstitial);
@@ -113,24 +123,26 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
     change = 0;
     for (int f = 0; f < s.faces; ++f)
       change = std::max(change, std::abs(w.flux[f] - w.flux_before[f]));
-    if (change <= problem.numerics.legacy.tolerance * largest(w.flux)) return;
+    if (change <= problem.numerics.legacy.tolerance * largest(problem.stencil, w.flux)) return;
   }
-  report.legacy_change = std::max(report.legacy_change, change / largest(w.flux));
+  report.legacy_change = std::max(report.legacy_change, change / largest(problem.stencil, w.flux));
 }
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
 void close(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
-  for (std::size_t f = 0; f < w.flux.size(); ++f)
-    w.mass_flux[f] = problem.fluid.density * w.flux[f];
+  const Stencil& s = problem.stencil;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.mass_flux[f] = problem.fluid.density * w.flux[f];
   if (problem.continuity == Continuity::legacy) return;
   const double correction = close_fluxes(w.tree, problem.stencil, w.storage, w.mass_flux);
   // In a fluid at rest all fluxes are rounding, and so is their correction: no error of the solver.
-  const double rounding =
-      1e-13 * problem.fluid.density * largest(problem.stencil.volume) / step.window.length;
-  report.closure_correction = correction > rounding ? correction / largest(w.mass_flux) : 0.0;
-  for (std::size_t f = 0; f < w.flux.size(); ++f)
-    w.flux[f] = w.mass_flux[f] / problem.fluid.density;
+  const double rounding = 1e-13 * problem.fluid.density *
+                          largest(problem.stencil, problem.stencil.volume) / step.window.length;
+  report.closure_correction =
+      correction > rounding ? correction / largest(problem.stencil, w.mass_flux) : 0.0;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.flux[f] = w.mass_flux[f] / problem.fluid.density;
 }
 
 }  // namespace
@@ -138,15 +150,17 @@ void close(const Step& step, WindowFields& w, FluidReport& report) {
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
   problem.stencil = make_stencil(mesh);
+  problem.stencil.threads = threads_for(scene.fluid.numerics.threads, mesh.cells());
   problem.conditions = read_boundaries(scene, mesh, problem.stencil);
   problem.regions = find_regions(problem.stencil, problem.conditions);
   problem.fluid = {scene.fluid.density, scene.fluid.viscosity, scene.fluid.numerics.convection};
   problem.numerics = scene.fluid.numerics;
   problem.continuity = scene.coupling.continuity;
   problem.model = scene.interphase.model;
-  problem.gradient =
-      gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false));
-  problem.reconstruction = reconstruction_coefficients(problem.stencil);
+  const bool lattice = mesh.lattice.has_value();
+  problem.gradient = AxisVectors(
+      gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false)), lattice);
+  problem.reconstruction = AxisVectors(reconstruction_coefficients(problem.stencil), lattice);
   if (!problem.stencil.orthogonal) {
     problem.pressure_gradient =
         gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, true));
@@ -179,25 +193,33 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   matrix.diagonal.assign(cell_count, 0.0);
   matrix.coupling.assign(static_cast<std::size_t>(s.internal_faces), 0.0);
   for (auto* values : {&storage, &source, &pressure, &rhs}) values->assign(cell_count, 0.0);
-  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux, &face_voidage,
-                       &interstitial_flux, &flux_before}) {
+  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux})
     values->assign(face_count, 0.0);
-  }
-  face_scale.assign(face_count, 1.0);
   for (auto* values : {&old_superficial, &superficial, &velocity, &velocity_before, &force,
-                       &specific_force, &closing_gradient, &voidage_gradient, &interstitial}) {
+                       &specific_force, &closing_gradient}) {
     values->assign(cell_count, Vector3::Zero());
+  }
+  if (problem.continuity == Continuity::legacy) {
+    for (auto* values : {&face_scale, &face_voidage, &interstitial_flux, &flux_before})
+      values->assign(face_count, 1.0);
+    for (auto* values : {&voidage_gradient, &interstitial})
+      values->assign(cell_count, Vector3::Zero());
   }
   if (problem.numerics.time == TimeScheme::bdf2) convecting.assign(face_count, 0.0);
   if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
-  if (!s.orthogonal) pressure_slope.assign(cell_count, Vector3::Zero());
+  if (!s.orthogonal) {
+    pressure_slope.assign(cell_count, Vector3::Zero());
+    flux_before.assign(face_count, 0.0);
+  }
   velocity_gradient.assign(cell_count, Matrix3::Zero());
   superficial_gradient.assign(cell_count, Matrix3::Zero());
   jump.assign(boundary_count, Vector3::Zero());
   pressure_jump.assign(boundary_count, 0.0);
 }
 
-void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w) {
+void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
+               FluidReport& report) {
+  LapClock clock;
   const FluidProblem& problem = step.problem;
   const FluidState& old_state = step.old_state;
   const auto voidage = step.solids.voidage;
@@ -205,6 +227,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w) 
   const double density = problem.fluid.density;
   w.time = time;
   update_boundary_values(s, problem.conditions, voidage, step.window.end(), w.boundary);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     double change = time.now * (voidage[cell] - old_state.voidage[cell]);
     if (time.two_steps())
@@ -213,18 +236,22 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w) 
     w.old_superficial[cell] = old_state.voidage[cell] * old_state.velocity[cell];
     w.pressure[cell] = old_state.pressure[cell] - problem.conditions.level;
   }
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) w.old_flux[f] = old_state.face_flux[f] / density;
   if (problem.continuity == Continuity::conservative) {
     settle_closed_regions(s, problem.regions, w.boundary.flux, density, step.window.length,
                           step.window.step, w.storage);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int cell = 0; cell < s.cells; ++cell) w.source[cell] = -w.storage[cell] / density;
   } else {
     legacy_face_voidage(s, voidage, w.face_voidage);
     legacy_voidage_gradient(s, w.face_voidage, w.voidage_gradient);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int f = 0; f < s.faces; ++f) w.face_scale[f] = 1 / w.face_voidage[f];
   }
   std::span<const double> convecting = old_state.face_flux;
   if (time.two_steps()) {
+#pragma omp parallel for schedule(static) num_threads(s.threads)
     for (int f = 0; f < s.faces; ++f) {
       w.convecting[f] = extrapolated(time, old_state.face_flux[f], old_state.before.face_flux[f]);
     }
@@ -235,36 +262,46 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w) 
   assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w), old_state,
                  time, w.faces);
   assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
+  report.seconds.assembly += clock.lap();
   w.pressure_solver->setup(w.matrix);
+  report.seconds.setup += clock.lap();
 }
 
 void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
+  LapClock clock;
   evaluate_cells(step, w);
+  report.seconds.assembly += clock.lap();
   if (problem.continuity == Continuity::conservative) {
     solve_fluxes(problem, w, report);
   } else {
-    evaluate_explicit_flux(problem, w.flux, w);
+    evaluate_explicit_flux(problem, w.flux, w, report);
     solve_legacy_continuity(step, w, report);
   }
+  clock.lap();  // the solve has its own
   if (last) close(step, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  w.closing_gradient);
-  if (s.few_faces.empty()) return;
-  balance_cells(s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time,
-                problem.cell_balance,
-                {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux, w.pressure_slope,
-                 w.force, w.velocity_before},
-                w.velocity, w.closing_gradient);
+  if (!s.few_faces.empty()) {
+    balance_cells(s, problem.conditions, w.boundary, w.momentum, step.old_state, w.time,
+                  problem.cell_balance,
+                  {step.solids.voidage, pressure_share(step, w), w.pressure, w.flux,
+                   w.pressure_slope, w.force, w.velocity_before},
+                  w.velocity, w.closing_gradient);
+  }
+  report.seconds.closure += clock.lap();
 }
 
 void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
   const LevelBefore& before = step.old_state.before;
-  for (int cell = 0; cell < step.problem.stencil.cells; ++cell) {
+  const Stencil& s = step.problem.stencil;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
     Vector3 start = w.old_superficial[cell];
     if (w.time.two_steps()) {
       start = extrapolated(w.time, start, Vector3(before.voidage[cell] * before.velocity[cell]));
@@ -277,12 +314,15 @@ void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
 
 void predict(const Step& step, WindowFields& w, FluidReport& report) {
   const Stencil& s = step.problem.stencil;
+  LapClock clock;
   // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred
   // parts included.
   std::swap(w.velocity, w.velocity_before);
   report.predictor_iterations += predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
                                                   w.closing_gradient, w.predictor, w.velocity);
+  report.seconds.predictor += clock.lap();
   if (s.uniform) return;  // no face value of the flux enters
+#pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell)
     w.superficial[cell] = step.solids.voidage[cell] * w.velocity[cell];
   predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);

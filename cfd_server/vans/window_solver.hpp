@@ -25,9 +25,9 @@ struct FluidProblem {
   FluidNumerics numerics;
   Continuity continuity = Continuity::conservative;
   PressureModel model = PressureModel::a;
-  std::vector<Vector3> gradient;           ///< least-squares coefficients of velocities, one a side
+  AxisVectors gradient;                    ///< least-squares coefficients of velocities, one a side
   std::vector<Vector3> pressure_gradient;  ///< of the pressure; empty on orthogonal meshes
-  std::vector<Vector3> reconstruction;     ///< one a side
+  AxisVectors reconstruction;              ///< one a side
   std::vector<Vector3> cell_balance;       ///< one a side; empty without cells of few faces
 };
 
@@ -71,8 +71,8 @@ struct WindowFields {
   std::vector<Vector3> jump;          ///< one a boundary face
   std::vector<double> pressure_jump;  ///< one a boundary face
 
-  // continuity: legacy
-  std::vector<double> face_scale;         ///< one a face: 1, or 1/ε_f
+  // continuity: legacy; empty else
+  std::vector<double> face_scale;         ///< one a face: 1/ε_f
   std::vector<double> face_voidage;       ///< one a face
   std::vector<double> interstitial_flux;  ///< Λ/ρ [m³/s], one a face
   std::vector<Vector3> voidage_gradient;
@@ -89,7 +89,8 @@ struct Step {
 
 /// Everything that stays the same in all correctors of a step. `time` says how the old levels
 /// enter.
-void open_step(const Step& step, const TimeCoefficients& time, WindowFields& fields);
+void open_step(const Step& step, const TimeCoefficients& time, WindowFields& fields,
+               FluidReport& report);
 
 /// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With
 /// `last` the fluxes are closed before the velocity is rebuilt from them.

@@ -157,6 +157,7 @@ struct FluidNumerics {
   int non_orthogonal_correctors = 1;  ///< in each corrector, on meshes that are not orthogonal
   double pressure_tolerance = 1e-6;   ///< relative residual of the pressure equation [-]
   LinearSolverChoice solver = LinearSolverChoice::automatic;
+  int threads = 0;  ///< 0: all cores of the machine
   LegacySettings legacy;
 };
 

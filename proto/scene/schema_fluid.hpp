@@ -189,6 +189,11 @@ void describe(Visit& visit, FluidNumerics& numerics) {
   visit({.name = "solver",
          .meaning = "Linear solver of the pressure equation; `automatic` chooses by the mesh."},
         numerics.solver);
+  visit({.name = "threads",
+         .range = not_negative,
+         .meaning = "Threads of the fluid solver, fewer on small meshes; 0: all cores. The result "
+                    "has the same bits for any number."},
+        numerics.threads);
   visit({.name = "legacy", .meaning = "Convergence of the mass source with `continuity: legacy`."},
         numerics.legacy);
 }

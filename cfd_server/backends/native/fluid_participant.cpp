@@ -78,6 +78,6 @@ void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
 
 void NativeFluid::commit() { solver().commit(); }
 void NativeFluid::rollback() { solver().rollback(); }
-void NativeFluid::snapshot(Fields& /*out*/) {}
+void NativeFluid::snapshot(Fields& /*out*/) { solver().forget_setup(); }
 
 }  // namespace fluxpact

@@ -24,7 +24,8 @@ class NativeFluid final : public Participant {
   void commit() override;
   void rollback() override;
 
-  /// Nothing: the coordinator has all fluid fields already.
+  /// Adds nothing: the coordinator has all fluid fields already. Windows after it depend on them
+  /// only.
   void snapshot(Fields& out) override;
 
  private:

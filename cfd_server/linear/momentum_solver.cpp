@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cfd_server/linear/blocked_sum.hpp"
+#include "cfd_server/linear/bicgstab.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -12,26 +12,17 @@ namespace {
 constexpr double tolerance = 1e-10;
 constexpr int most_iterations = 1000;
 
-double dot(const Stencil& s, const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
-  return blocked_sum<double>(s.cells, s.threads, [&](int i) { return a[i].dot(b[i]); });
-}
-
-/// y += factor x
-void add(const Stencil& s, double factor, const std::vector<Vector3>& x, std::vector<Vector3>& y) {
-#pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int i = 0; i < s.cells; ++i) y[i] += factor * x[i];
-}
-
 }  // namespace
 
 MomentumSolver::MomentumSolver(const Stencil& stencil, std::vector<SlipFace> slip_faces)
-    : slip(std::move(slip_faces)), stencil_(stencil) {
+    : slip(std::move(slip_faces)),
+      stencil_(stencil),
+      work_(static_cast<std::size_t>(stencil.cells), Vector3::Zero()) {
   const auto cells = static_cast<std::size_t>(stencil.cells);
   diagonal.assign(cells, 0.0);
   weight.assign(stencil.side_face.size(), 0.0);
-  for (auto* values : {&residual, &change, &shadow_, &direction_, &hat_, &product_, &second_}) {
-    values->assign(cells, Vector3::Zero());
-  }
+  residual.assign(cells, Vector3::Zero());
+  change.assign(cells, Vector3::Zero());
 }
 
 void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
@@ -49,66 +40,19 @@ void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3
   }
 }
 
-void MomentumSolver::precondition(const std::vector<Vector3>& x, std::vector<Vector3>& y) const {
-#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
-  for (int i = 0; i < stencil_.cells; ++i) y[i] = x[i] / diagonal[i];
-}
-
 int MomentumSolver::solve(double scale_squared) {
   std::ranges::fill(change, Vector3::Zero());
-  const double target = tolerance * tolerance * scale_squared;
-  double norm = dot(stencil_, residual, residual);
-  double rho = 0;
-  int iterations = 0;
-  bool restart = true;
-  while (!(norm <= target)) {
-    if (iterations == most_iterations || !std::isfinite(norm)) {
-      throw NumericsError(
-          "fluid: the momentum predictor has the relative residual {} after {} iterations; shorten "
-          "coupling.window",
-          std::sqrt(norm / scale_squared), iterations);
-    }
-    if (restart) {
-      shadow_ = residual;
-      direction_ = residual;
-      rho = norm;
-      restart = false;
-    }
-    precondition(direction_, hat_);
-    multiply(hat_, product_);
-    const double projection = dot(stencil_, shadow_, product_);
-    if (projection == 0) {
-      restart = true;
-      ++iterations;
-      continue;
-    }
-    const double alpha = rho / projection;
-    add(stencil_, alpha, hat_, change);
-    add(stencil_, -alpha, product_, residual);
-    precondition(residual, hat_);
-    multiply(hat_, second_);
-    const double squared = dot(stencil_, second_, second_);
-    const double omega = squared > 0 ? dot(stencil_, second_, residual) / squared : 0.0;
-    add(stencil_, omega, hat_, change);
-    add(stencil_, -omega, second_, residual);
-    norm = dot(stencil_, residual, residual);
-    ++iterations;
-    const double rho_next = dot(stencil_, shadow_, residual);
-    // The recurrence breaks down when the residual turns orthogonal to the shadow: start it anew
-    // from here.
-    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(dot(stencil_, shadow_, shadow_)) ||
-        omega == 0) {
-      restart = true;
-      continue;
-    }
-    const double beta = rho_next / rho * (alpha / omega);
-#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
-    for (int i = 0; i < stencil_.cells; ++i) {
-      direction_[i] = residual[i] + beta * (direction_[i] - omega * product_[i]);
-    }
-    rho = rho_next;
+  const BicgstabOutcome outcome = solve_bicgstab(
+      [this](const std::vector<Vector3>& x, std::vector<Vector3>& y) { multiply(x, y); }, diagonal,
+      stencil_.threads, tolerance * tolerance * scale_squared, most_iterations, residual, change,
+      work_);
+  if (!outcome.converged) {
+    throw NumericsError(
+        "fluid: the momentum predictor has the relative residual {} after {} iterations; shorten "
+        "coupling.window",
+        std::sqrt(outcome.residual_squared / scale_squared), outcome.iterations);
   }
-  return iterations;
+  return outcome.iterations;
 }
 
 }  // namespace fluxpact

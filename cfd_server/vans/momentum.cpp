@@ -7,10 +7,17 @@ namespace {
 
 void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
                     const FluidProperties& fluid, std::span<const double> flux,
-                    std::span<const double> voidage, std::span<const double> viscosity,
+                    std::span<const double> voidage, const ViscosityFields& viscosity,
                     TransportCoefficients& faces) {
   const auto stress = [&](int cell) {
-    return (viscosity.empty() ? fluid.viscosity : viscosity[cell]) * voidage[cell];
+    return (viscosity.of_cells.empty() ? fluid.viscosity : viscosity.of_cells[cell]) *
+           voidage[cell];
+  };
+  const auto boundary_stress = [&](int f) {
+    const int cell = s.owner[f];
+    return viscosity.of_boundary.empty()
+               ? stress(cell)
+               : viscosity.of_boundary[f - s.internal_faces] * voidage[cell];
   };
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.internal_faces; ++f) {
@@ -23,14 +30,14 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
     // Through a pressure face the cell's own velocity passes, either way: no net force.
     const bool fixed = conditions.kind[f - s.internal_faces] == FaceKind::fixed_flux;
     faces.mass_flux[f] = fixed ? flux[f] : 0.0;
-    faces.diffusion[f] = fixed ? stress(s.owner[f]) * s.conductance[f] : 0.0;
+    faces.diffusion[f] = fixed ? boundary_stress(f) * s.conductance[f] : 0.0;
   }
   finish_coefficients(faces, s.threads);
   for (int f = s.internal_faces; f < s.faces; ++f) {
     // A wall that fluid slips along holds the normal part of the velocity and a share of the rest:
     // it has a weight, but no gradient of its own.
     if (conditions.kind[f - s.internal_faces] == FaceKind::slip) {
-      faces.into_owner[f] = stress(s.owner[f]) * s.conductance[f];
+      faces.into_owner[f] = boundary_stress(f) * s.conductance[f];
     }
   }
 }
@@ -57,7 +64,7 @@ void resize(MomentumCoefficients& c, const Stencil& s) {
 void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
                        const FluidProperties& fluid, const FluidState& old_state,
                        const SolidsInput& solids, const TimeCoefficients& time,
-                       std::span<const double> convecting, std::span<const double> viscosity,
+                       std::span<const double> convecting, const ViscosityFields& viscosity,
                        MomentumCoefficients& c) {
   assemble_faces(s, conditions, fluid, convecting, solids.voidage, viscosity, c.faces);
 #pragma omp parallel for schedule(static) num_threads(s.threads)

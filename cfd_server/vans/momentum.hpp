@@ -27,6 +27,13 @@ struct FluidProperties {
   Convection convection = Convection::limited;
 };
 
+/// Where turbulence adds to the fluid's own viscosity [Pa s]; empty without a model.
+struct ViscosityFields {
+  std::span<const double> of_cells;
+  std::span<const double> of_boundary;  ///< one a boundary face, with wall functions; empty: that
+                                        ///< of the cell
+};
+
 /// Coefficients of one window. One entry a cell unless stated.
 struct MomentumCoefficients {
   std::vector<double> inertia;    ///< A_t [kg/s]
@@ -40,12 +47,11 @@ struct MomentumCoefficients {
 void resize(MomentumCoefficients& coefficients, const Stencil& stencil);
 
 /// Fill the coefficients from the last state and the solids at the step's end. convecting: Φ
-/// [kg/s], one a face. viscosity [Pa s]: one a cell where turbulence adds to the fluid's own, else
-/// empty.
+/// [kg/s], one a face.
 void assemble_momentum(const Stencil& stencil, const BoundaryConditions& conditions,
                        const FluidProperties& fluid, const FluidState& old_state,
                        const SolidsInput& solids, const TimeCoefficients& time,
-                       std::span<const double> convecting, std::span<const double> viscosity,
+                       std::span<const double> convecting, const ViscosityFields& viscosity,
                        MomentumCoefficients& coefficients);
 
 /// velocity [m/s] += the change that solves the predictor with the deferred parts of `force`

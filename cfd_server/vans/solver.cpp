@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "cfd_server/scalars/fluid_scalars.hpp"
+#include "cfd_server/turbulence/turbulence.hpp"
 #include "cfd_server/vans/inner_steps.hpp"
 #include "cfd_server/vans/window_check.hpp"
 #include "cfd_server/vans/window_solver.hpp"
@@ -63,6 +65,11 @@ struct VansSolver::Impl {
         voidage(problem.stencil.volume.size()) {
     resize(committed, problem.stencil);
     resize(candidate, problem.stencil);
+    if (!scene.fluid.scalars.empty())
+      scalars = std::make_unique<FluidScalars>(scene, mesh, problem.stencil);
+    if (scene.fluid.turbulence.model != TurbulenceModel::none) {
+      turbulence = std::make_unique<Turbulence>(scene, mesh, problem.stencil, problem.conditions);
+    }
   }
 
   void warn_once();
@@ -70,14 +77,17 @@ struct VansSolver::Impl {
                     const Progress& progress, FluidState& to);
   [[noreturn]] void refuse(const Window& window, int count, const SolidsInput& solids,
                            const NumericsError& error) const;
+  void carry(const FluidState& from, const FluidState& to, const Window& step);
   void finish_window(const Window& window, int inner_steps);
 
   FluidProblem problem;
   WindowFields fields;
   VectorValue initial_superficial;
-  std::vector<double> voidage;  ///< at the end of an inner step
-  FluidState between;           ///< of inner steps; sized when a window first needs them
-  WindowMeans means;            ///< of the window in hand; sized with it
+  std::vector<double> voidage;             ///< at the end of an inner step
+  FluidState between;                      ///< of inner steps; sized when a window first needs them
+  WindowMeans means;                       ///< of the window in hand; sized with it
+  std::unique_ptr<FluidScalars> scalars;   ///< nothing if the scene has none
+  std::unique_ptr<Turbulence> turbulence;  ///< nothing without a model
   FluidState committed;
   FluidState candidate;
   FluidReport report;
@@ -111,6 +121,7 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
                                     FluidState& to) {
   const Step step{problem, from, window, solids};
   const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
+  if (turbulence) fields.viscosity = turbulence->prepare(from.velocity, fields.boundary);
   open_step(step, time, fields, report);
   pre_correct(step, fields, report);
   if (progress) progress();
@@ -147,6 +158,22 @@ void VansSolver::Impl::refuse(const Window& window, int count, const SolidsInput
         stiffness, std::min(window.length, window.length / count * 1000 / stiffness));
   }
   throw NumericsError("{}", text);
+}
+
+/// What the fluid carries, with the mass that passed in a step.
+void VansSolver::Impl::carry(const FluidState& from, const FluidState& to, const Window& step) {
+  if (!scalars && !turbulence) return;
+  const std::span<const double> passed = to.before.passed.empty() ? to.face_flux : to.before.passed;
+  const FluidStep done{problem.fluid.density,
+                       step.length,
+                       from.voidage,
+                       to.voidage,
+                       passed,
+                       problem.continuity == Continuity::conservative};
+  if (turbulence) turbulence->advance(done, to.velocity, fields.boundary);
+  if (!scalars) return;
+  scalars->advance(done, step.end(),
+                   turbulence ? turbulence->eddy_viscosity() : std::span<const double>{});
 }
 
 /// The window's mean flux balances what the voidage changed by, to the last digit.
@@ -201,6 +228,8 @@ void VansSolver::start(std::span<const double> voidage) {
   state.step = 0;
   state.before = {};
   state.means = {};
+  if (self.scalars) self.scalars->start();
+  if (self.turbulence) self.turbulence->start();
   self.has_candidate = false;
   self.fields.pressure_solver->forget();
 }
@@ -219,6 +248,8 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
       courant_number(problem, self.committed, self.fields.boundary, solids.voidage, window.length);
   const int count = count_inner_steps(courant, problem.numerics.courant_limit, window);
   if (count > 1 && self.between.voidage.empty()) resize(self.between, problem.stencil);
+  if (self.scalars) self.scalars->open_window();
+  if (self.turbulence) self.turbulence->open_window();
   const FluidState* from = &self.committed;
   for (int number = 1; number <= count; ++number) {
     const bool last = number == count;
@@ -229,7 +260,9 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
                              solids.drag_coefficient, solids.drag_source};
     FluidState& to = from == &self.candidate ? self.between : self.candidate;
     try {
-      self.advance_step(*from, inner_window(window, number, count), at_end, progress, to);
+      const Window step = inner_window(window, number, count);
+      self.advance_step(*from, step, at_end, progress, to);
+      self.carry(*from, to, step);
     } catch (const NumericsError& error) {
       self.refuse(window, count, solids, error);
     }
@@ -239,6 +272,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   if (from == &self.between) std::swap(self.between, self.candidate);
   if (count > 1) std::swap(self.means, self.candidate.means);
   self.finish_window(window, count);
+  if (self.scalars) self.scalars->close_window(window.length);
   self.has_candidate = true;
   self.warn_once();
 }
@@ -247,6 +281,8 @@ void VansSolver::commit() {
   if (!impl_->has_candidate)
     throw NumericsError("fluid: there is no candidate to commit; advance must come first");
   std::swap(impl_->committed, impl_->candidate);
+  if (impl_->scalars) impl_->scalars->commit();
+  if (impl_->turbulence) impl_->turbulence->commit();
   impl_->fields.pressure_solver->commit();
   impl_->has_candidate = false;
 }
@@ -270,5 +306,7 @@ std::span<const Vector3> window_pressure_gradient(const FluidState& state) {
 const FluidState& VansSolver::committed() const { return impl_->committed; }
 const FluidState& VansSolver::candidate() const { return impl_->candidate; }
 const FluidReport& VansSolver::report() const { return impl_->report; }
+const FluidScalars* VansSolver::scalars() const { return impl_->scalars.get(); }
+const Turbulence* VansSolver::turbulence() const { return impl_->turbulence.get(); }
 
 }  // namespace fluxpact

@@ -67,6 +67,9 @@ struct FluidReport {
   PhaseSeconds seconds;
 };
 
+class FluidScalars;
+class Turbulence;
+
 class VansSolver {
  public:
   /// Throws ConfigError if the scene cannot be solved on this mesh (a patch without a condition,
@@ -89,6 +92,9 @@ class VansSolver {
   const FluidState& committed() const;
   const FluidState& candidate() const;
   const FluidReport& report() const;
+  /// Nothing if the scene has none.
+  const FluidScalars* scalars() const;
+  const Turbulence* turbulence() const;
 
  private:
   struct Impl;

@@ -245,7 +245,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
     convecting = w.convecting;
   }
   assemble_momentum(s, problem.conditions, problem.fluid, old_state, step.solids, time, convecting,
-                    {}, w.momentum);
+                    w.viscosity, w.momentum);
   assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w), old_state,
                  time, w.faces);
   if (!s.orthogonal) {

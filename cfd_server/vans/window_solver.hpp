@@ -36,6 +36,7 @@ struct WindowFields {
   explicit WindowFields(const FluidProblem& problem, const Mesh& mesh);
 
   TimeCoefficients time;
+  ViscosityFields viscosity;  ///< of turbulence, set before the step; empty without
   BoundaryValues boundary;
   MomentumCoefficients momentum;
   FaceCoefficients faces;

@@ -79,15 +79,52 @@ constexpr auto all_columns = std::to_array<AuditColumn>({
      RealColumn{[](Row row) { return row.wall_exchange; }}},
 });
 
+constexpr auto all_scalar_columns = std::to_array<ScalarColumn>({
+    {"amount", "kg", "J", "what the fluid holds at the window's end; of heat above 0 K",
+     [](const ScalarAudit& scalar) { return scalar.amount; }},
+    {"in", "kg/s", "W", "what enters through the boundary",
+     [](const ScalarAudit& scalar) { return scalar.in; }},
+    {"out", "kg/s", "W", "what leaves through the boundary",
+     [](const ScalarAudit& scalar) { return scalar.out; }},
+    {"source", "kg/s", "W", "what its sources add",
+     [](const ScalarAudit& scalar) { return scalar.source; }},
+    {"imbalance", "1", "1",
+     "in - out + source less the rate of change of the amount, over the amount, per window",
+     [](const ScalarAudit& scalar) { return scalar.imbalance; }},
+    {"min", "1", "K", "smallest value in a cell",
+     [](const ScalarAudit& scalar) { return scalar.lowest; }},
+    {"max", "1", "K", "largest value in a cell",
+     [](const ScalarAudit& scalar) { return scalar.highest; }},
+});
+
 }  // namespace
+
+std::vector<ScalarName> scalar_names(const Scene& scene) {
+  std::vector<ScalarName> names;
+  for (const auto& [name, scalar] : scene.fluid.scalars) names.push_back({name, scalar.kind});
+  return names;
+}
+
+std::span<const ScalarColumn> scalar_columns() { return all_scalar_columns; }
+
+std::string column_name(const ScalarName& scalar, const ScalarColumn& column) {
+  return fmt::format("scalar_{}_{}", scalar.name, column.name);
+}
+
+const char* column_unit(const ScalarName& scalar, const ScalarColumn& column) {
+  return scalar.kind == ScalarKind::temperature ? column.heat_unit : column.unit;
+}
 
 std::span<const AuditColumn> audit_columns() { return all_columns; }
 
-std::string audit_csv_header() {
+std::string audit_csv_header(std::span<const ScalarName> scalars) {
   std::string line;
   for (const AuditColumn& column : all_columns) {
     if (!line.empty()) line += ',';
     line += column.name;
+  }
+  for (const ScalarName& scalar : scalars) {
+    for (const ScalarColumn& column : all_scalar_columns) line += ',' + column_name(scalar, column);
   }
   return line + '\n';
 }
@@ -100,6 +137,13 @@ std::string audit_reference() {
       "| column | unit | meaning |\n| --- | --- | --- |\n";
   for (const AuditColumn& column : all_columns) {
     table += fmt::format("| `{}` | {} | {} |\n", column.name, column.unit, column.meaning);
+  }
+  table +=
+      "\nEach scalar of the scene (`fluid.scalars`) adds at the end, with its name for NAME:\n\n"
+      "| column | unit of a species | of a temperature | meaning |\n| --- | --- | --- | --- |\n";
+  for (const ScalarColumn& column : all_scalar_columns) {
+    table += fmt::format("| `scalar_NAME_{}` | {} | {} | {} |\n", column.name, column.unit,
+                         column.heat_unit, column.meaning);
   }
   return table;
 }

@@ -6,9 +6,12 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "coordinator/audit/mass_ledger.hpp"
 #include "coordinator/audit/momentum_ledger.hpp"
+#include "coordinator/audit/scalar_ledger.hpp"
+#include "proto/scene/scene.hpp"
 
 namespace fluxpact {
 
@@ -24,6 +27,7 @@ struct AuditRow {
   double wall_cfd = 0;                 ///< [s] of this machine's time
   double wall_dem = 0;                 ///< [s]
   double wall_exchange = 0;            ///< [s]
+  std::vector<ScalarAudit> scalars;    ///< in the order of fluid.scalars
 };
 
 using RealColumn = double (*)(const AuditRow&);
@@ -39,11 +43,35 @@ struct AuditColumn {
   std::variant<RealColumn, WholeColumn> value;
 };
 
-/// All columns in the order of audit.csv.
+/// The columns of every run, in the order of audit.csv.
 std::span<const AuditColumn> audit_columns();
 
-/// "step,time,..." and a line end.
-std::string audit_csv_header();
+/// A scalar of the scene, as its columns are named.
+struct ScalarName {
+  std::string name;
+  ScalarKind kind = ScalarKind::species;
+};
+
+/// Those of fluid.scalars, in order.
+std::vector<ScalarName> scalar_names(const Scene& scene);
+
+/// A column that each scalar of the scene adds: scalar_NAME_<name>.
+struct ScalarColumn {
+  const char* name;
+  const char* unit;       ///< of a species
+  const char* heat_unit;  ///< of a temperature
+  const char* meaning;
+  double (*value)(const ScalarAudit&);
+};
+
+std::span<const ScalarColumn> scalar_columns();
+
+/// "scalar_NAME_amount", and its unit.
+std::string column_name(const ScalarName& scalar, const ScalarColumn& column);
+const char* column_unit(const ScalarName& scalar, const ScalarColumn& column);
+
+/// "step,time,..." and a line end; the columns of the scalars come last.
+std::string audit_csv_header(std::span<const ScalarName> scalars = {});
 
 /// docs/audit-reference.md: the columns as a Markdown table of name, unit, meaning.
 std::string audit_reference();

@@ -27,6 +27,9 @@ constexpr auto cures = std::to_array<Cure>({
      "the impulse that the fluid side says it took is not that of the drag it was sent"},
     {"handover_error",
      "the particle side was not given the impulse that the fluid side handed over"},
+    {"scalar_imbalance",
+     "what the fluid side says of the boundary flows and sources of a scalar does not make the "
+     "change of its amount"},
 });
 
 const char* cure_of(std::string_view quantity) {
@@ -36,12 +39,21 @@ const char* cure_of(std::string_view quantity) {
   return "";
 }
 
+double worst_imbalance(const AuditRow& row) {
+  double worst = 0;
+  for (const ScalarAudit& scalar : row.scalars) {
+    if (!(std::abs(scalar.imbalance) <= worst)) worst = std::abs(scalar.imbalance);
+    if (std::isnan(worst)) break;
+  }
+  return worst;
+}
+
 std::optional<int> place(int cell) { return cell < 0 ? std::nullopt : std::optional(cell); }
 
 }  // namespace
 
 Verdict judge(const AuditRow& row, double limit) {
-  const std::array<Verdict, 5> quantities{{
+  const std::array<Verdict, 6> quantities{{
       {true, "voidage_volume_error", row.mass.voidage_volume_error, limit, {}},
       {true, "max_cell_residual", row.mass.max_cell_residual, limit,
        place(row.mass.max_cell_residual_cell)},
@@ -49,6 +61,7 @@ Verdict judge(const AuditRow& row, double limit) {
       {true, "impulse_error", row.momentum.impulse_error, limit,
        place(row.momentum.impulse_error_cell)},
       {true, "handover_error", row.momentum.handover_error, limit, {}},
+      {true, "scalar_imbalance", worst_imbalance(row), limit, {}},
   }};
   Verdict worst = quantities.front();
   for (const Verdict& quantity : quantities) {

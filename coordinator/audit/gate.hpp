@@ -17,8 +17,9 @@ struct Verdict {
   std::optional<int> cell;    ///< where, for a quantity that has a place
 };
 
-/// Holds |relative_imbalance|, max_cell_residual, voidage_volume_error and both relative momentum
-/// errors against `limit` (scene: coupling.audit.limit). A value that is not a number never passes.
+/// Holds |relative_imbalance|, max_cell_residual, voidage_volume_error, both relative momentum
+/// errors and the imbalance of each scalar against `limit` (scene: coupling.audit.limit). A value
+/// that is not a number never passes.
 Verdict judge(const AuditRow& row, double limit);
 
 /// One sentence for the user: what was seen where, and what to do. For a verdict that did not pass.

@@ -49,7 +49,8 @@ void check_particle_fields(const Message& result, const Mesh& mesh, std::int64_t
   }
 }
 
-void check_fluid_fields(const Message& result, const Mesh& mesh, std::int64_t step) {
+void check_fluid_fields(const Message& result, const Scene& scene, const Mesh& mesh,
+                        std::int64_t step) {
   const Fields fields = fields_of(result);
   fields.scalars(field::face_flux, mesh.faces());
   fields.vectors(field::velocity, mesh.cells());
@@ -60,6 +61,11 @@ void check_fluid_fields(const Message& result, const Mesh& mesh, std::int64_t st
     for (const auto* name :
          {field::solver_iterations, field::closure_correction, field::wall_seconds})
       fields.number(name);
+  }
+  for (const auto& [name, scalar] : scene.fluid.scalars) {
+    fields.scalars(field::scalar(name), mesh.cells());
+    fields.scalars(field::scalar_flux(name), mesh.faces() - mesh.internal_faces());
+    fields.number(field::scalar_source(name));
   }
   require_finite(fields, "cfd_server", step);
 }

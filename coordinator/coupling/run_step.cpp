@@ -33,8 +33,35 @@ Message advance_fluid(const Coupling& coupling, const Window& window, Message& p
   for (const auto* name : {field::voidage, field::drag_coefficient, field::drag_source})
     share_array(request, particles, name);
   Message result = coupling.session.ask(Role::fluid, request);
-  check_fluid_fields(result, coupling.mesh, window.step);
+  check_fluid_fields(result, coupling.scene, coupling.mesh, window.step);
   return result;
+}
+
+/// The budget of each scalar of the scene.
+std::vector<ScalarAudit> audit_scalars(const Coupling& coupling, const Window& window,
+                                       const CommittedState& state, const Fields& particles,
+                                       const Fields& fluid) {
+  std::vector<ScalarAudit> audits;
+  if (coupling.scene.fluid.scalars.empty()) return audits;
+  const int cells = coupling.mesh.cells();
+  const Fields particles_before = fields_of(state.particles);
+  const Fields fluid_before = fields_of(state.fluid);
+  for (const auto& [name, scalar] : coupling.scene.fluid.scalars) {
+    const bool heat = scalar.kind == ScalarKind::temperature;
+    audits.push_back(audit_scalar(
+        coupling.mesh,
+        {.density = coupling.scene.fluid.density,
+         .length = window.length,
+         .factor = heat ? scalar.heat_capacity : 1.0,
+         .voidage_before = particles_before.scalars(field::voidage, cells),
+         .voidage_after = particles.scalars(field::voidage, cells),
+         .value_before = fluid_before.scalars(field::scalar(name), cells),
+         .value_after = fluid.scalars(field::scalar(name), cells),
+         .boundary_flux = fluid.scalars(field::scalar_flux(name),
+                                        coupling.mesh.faces() - coupling.mesh.internal_faces()),
+         .source = fluid.number(field::scalar_source(name))}));
+  }
+  return audits;
 }
 
 /// The ledgers of this window, from what was sent.
@@ -69,6 +96,7 @@ AuditRow audit(const Coupling& coupling, const Window& window, const CommittedSt
        .impulse_taken = fluid.vectors(field::impulse_taken, cells),
        .impulse_given = particles.vectors(field::impulse_given, cells)},
       state.momentum);
+  row.scalars = audit_scalars(coupling, window, state, particles, fluid);
   row.particle_count = static_cast<std::int64_t>(particles.number(field::particle_count));
   row.particle_mass = particles.number(field::particle_mass);
   row.solver_iterations = static_cast<std::int64_t>(fluid.number(field::solver_iterations));
@@ -95,7 +123,7 @@ CommittedState start_coupling(const Coupling& coupling) {
   check_particle_fields(state.particles, coupling.mesh, 0);
   share_array(request, state.particles, field::voidage);
   state.fluid = coupling.session.ask(Role::fluid, request);
-  check_fluid_fields(state.fluid, coupling.mesh, 0);
+  check_fluid_fields(state.fluid, coupling.scene, coupling.mesh, 0);
   const Fields particles = fields_of(state.particles);
   state.mass = start_mass(coupling.mesh, coupling.scene.fluid.density,
                           particles.scalars(field::voidage, coupling.mesh.cells()));

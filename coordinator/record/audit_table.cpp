@@ -6,16 +6,25 @@
 
 namespace fluxpact {
 
-AuditTable::AuditTable(Hdf5File& file) {
+AuditTable::AuditTable(Hdf5File& file, std::span<const ScalarName> scalars) {
   for (const AuditColumn& column : audit_columns()) {
     if (!column.reproducible) continue;
     const std::string name = std::string("/audit/") + column.name;
     if (std::holds_alternative<RealColumn>(column.value)) {
-      columns_.push_back({file.make_real_column(name, column.unit, capacity), column.value,
-                          std::vector<double>(capacity)});
+      columns_.push_back({file.make_real_column(name, column.unit, capacity),
+                          std::get<RealColumn>(column.value), std::vector<double>(capacity)});
     } else {
-      columns_.push_back({file.make_whole_column(name, column.unit, capacity), column.value,
+      columns_.push_back({file.make_whole_column(name, column.unit, capacity),
+                          std::get<WholeColumn>(column.value),
                           std::vector<std::int64_t>(capacity)});
+    }
+  }
+  for (std::size_t index = 0; index < scalars.size(); ++index) {
+    for (const ScalarColumn& column : scalar_columns()) {
+      const std::string name = "/audit/" + column_name(scalars[index], column);
+      const char* const unit = column_unit(scalars[index], column);
+      columns_.push_back({file.make_real_column(name, unit, capacity),
+                          OfScalar{index, column.value}, std::vector<double>(capacity)});
     }
   }
 }
@@ -23,7 +32,9 @@ AuditTable::AuditTable(Hdf5File& file) {
 void AuditTable::append(const AuditRow& row) {
   for (Column& column : columns_) {
     if (auto* reals = std::get_if<std::vector<double>>(&column.kept)) {
-      (*reals)[rows_] = std::get<RealColumn>(column.value)(row);
+      const auto* const of_scalar = std::get_if<OfScalar>(&column.value);
+      (*reals)[rows_] = of_scalar != nullptr ? of_scalar->value(row.scalars.at(of_scalar->index))
+                                             : std::get<RealColumn>(column.value)(row);
     } else {
       std::get<std::vector<std::int64_t>>(column.kept)[rows_] =
           std::get<WholeColumn>(column.value)(row);

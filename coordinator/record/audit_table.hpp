@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -17,8 +18,8 @@ class AuditTable {
   /// Rows that are kept back at most; also the piece in which HDF5 stores a column.
   static constexpr std::size_t capacity = 256;
 
-  /// Makes the datasets of all reproducible columns.
-  explicit AuditTable(Hdf5File& file);
+  /// Makes the datasets of all reproducible columns, those of the scalars included.
+  explicit AuditTable(Hdf5File& file, std::span<const ScalarName> scalars = {});
 
   /// Keeps a row. Allocates nothing. The table must not be full.
   void append(const AuditRow& row);
@@ -27,9 +28,14 @@ class AuditTable {
   void write_out();
 
  private:
+  /// A column of the scalar `index`.
+  struct OfScalar {
+    std::size_t index = 0;
+    double (*value)(const ScalarAudit&) = nullptr;
+  };
   struct Column {
     Hdf5Column dataset;
-    std::variant<RealColumn, WholeColumn> value;
+    std::variant<RealColumn, WholeColumn, OfScalar> value;
     std::variant<std::vector<double>, std::vector<std::int64_t>> kept;
   };
   std::vector<Column> columns_;

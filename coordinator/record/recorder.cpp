@@ -80,15 +80,16 @@ void check_ids(std::span<const double> ids) {
 
 Recorder::Recorder(std::filesystem::path directory, const Mesh& mesh, const RunDescription& run)
     : directory_(prepare(std::move(directory), run.scene_text)),
+      scalars_(run.scalars),
       cells_(static_cast<std::size_t>(mesh.cells())),
       faces_(static_cast<std::size_t>(mesh.faces())),
       // First: HDF5 locks the file, so a second run into the same directory stops here.
       file_(create_results(directory_ / results_file_name, run.program_version, run.continuity)),
-      audit_(std::in_place, file_),
+      audit_(std::in_place, file_, scalars_),
       csv_(TextFile::create(directory_ / csv_name)),
       index_(make_index(file_, mesh)) {
   write_mesh(file_, mesh);
-  csv_.append(audit_csv_header());
+  csv_.append(audit_csv_header(scalars_));
   file_.flush();
 }
 
@@ -108,6 +109,10 @@ void Recorder::append(const AuditRow& row) {
     std::visit(
         [&](const auto value) { fmt::format_to(std::back_inserter(line_), "{}", value(row)); },
         column.value);
+  }
+  for (const ScalarAudit& scalar : row.scalars) {
+    for (const ScalarColumn& column : scalar_columns())
+      fmt::format_to(std::back_inserter(line_), ",{}", column.value(scalar));
   }
   line_.push_back('\n');
   csv_.append({line_.data(), line_.size()});
@@ -146,11 +151,18 @@ void Recorder::record_fields(const Moment& moment, const FieldRecord& fields) {
   scalar("drag_coefficient", fields.drag_coefficient, "kg/s", cells_);
   vector("particle_velocity", fields.particle_velocity, "m/s");
   scalar("face_flux", fields.face_flux, "kg/s", faces_);
-  index_.add_fields(moment.time, {{"voidage", group + "voidage"},
+  std::vector<XdmfField> of_cells{{"voidage", group + "voidage"},
                                   {"velocity", group + "velocity", 3},
                                   {"pressure", group + "pressure"},
                                   {"drag_coefficient", group + "drag_coefficient"},
-                                  {"particle_velocity", group + "particle_velocity", 3}});
+                                  {"particle_velocity", group + "particle_velocity", 3}};
+  for (std::size_t i = 0; i < scalars_.size(); ++i) {
+    const std::string name = "scalar_" + scalars_[i].name;
+    scalar(name.c_str(), fields.scalars.at(i),
+           scalars_[i].kind == ScalarKind::temperature ? "K" : "1", cells_);
+    of_cells.push_back({name, group + name});
+  }
+  index_.add_fields(moment.time, of_cells);
   finish_record();
 }
 

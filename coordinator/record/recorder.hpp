@@ -31,6 +31,7 @@ struct RunDescription {
   std::string scene_text;  ///< the resolved scene as YAML
   std::string program_version;
   Continuity continuity = Continuity::conservative;
+  std::vector<ScalarName> scalars = {};
 };
 
 /// A committed time.
@@ -41,12 +42,13 @@ struct Moment {
 
 /// The committed fields; one row a cell, except `face_flux`: one a face.
 struct FieldRecord {
-  std::span<const double> voidage;             ///< [-]
-  std::span<const Vector3> velocity;           ///< interstitial [m/s]
-  std::span<const double> pressure;            ///< p − ρ g·x [Pa]
-  std::span<const double> drag_coefficient;    ///< [kg/s]
-  std::span<const Vector3> particle_velocity;  ///< [m/s]
-  std::span<const double> face_flux;           ///< superficial, out of the owner [kg/s]
+  std::span<const double> voidage;                    ///< [-]
+  std::span<const Vector3> velocity;                  ///< interstitial [m/s]
+  std::span<const double> pressure;                   ///< p − ρ g·x [Pa]
+  std::span<const double> drag_coefficient;           ///< [kg/s]
+  std::span<const Vector3> particle_velocity;         ///< [m/s]
+  std::span<const double> face_flux;                  ///< superficial, out of the owner [kg/s]
+  std::vector<std::span<const double>> scalars = {};  ///< c, in the order of the run's scalars
 };
 
 /// The committed particles, one row each, ascending by id.
@@ -88,6 +90,7 @@ class Recorder {
   void finish_record();
 
   std::filesystem::path directory_;
+  std::vector<ScalarName> scalars_;
   std::size_t cells_ = 0;
   std::size_t faces_ = 0;
   Hdf5File file_;

@@ -54,8 +54,9 @@ class Run {
  public:
   Run(const Scene& scene, const Mesh& mesh, const RunOptions& options)
       : scene_(scene),
-        recorder_(scene.output.directory, mesh,
-                  {write_scene(scene), version_line(), scene.coupling.continuity}),
+        recorder_(
+            scene.output.directory, mesh,
+            {write_scene(scene), version_line(), scene.coupling.continuity, scalar_names(scene)}),
         log_(open_log(recorder_.directory() / "run.log", options.log_level)),
         session_(scene, mesh, log_, options.log_level),
         coupling_{scene, mesh, session_},
@@ -139,13 +140,17 @@ class Run {
     const int cells = coupling_.mesh.cells();
     const Fields particles = fields_of(state_.particles);
     const Fields fluid = fields_of(state_.fluid);
+    std::vector<std::span<const double>> scalars;
+    for (const auto& [name, scalar] : scene_.fluid.scalars)
+      scalars.push_back(fluid.scalars(field::scalar(name), cells));
     recorder_.record_fields(
         moment, {.voidage = particles.scalars(field::voidage, cells),
                  .velocity = fluid.vectors(field::velocity, cells),
                  .pressure = fluid.scalars(field::pressure, cells),
                  .drag_coefficient = particles.scalars(field::drag_coefficient, cells),
                  .particle_velocity = particles.vectors(field::particle_velocity, cells),
-                 .face_flux = fluid.scalars(field::face_flux, coupling_.mesh.faces())});
+                 .face_flux = fluid.scalars(field::face_flux, coupling_.mesh.faces()),
+                 .scalars = scalars});
     recorded_fields_ = moment.step;
   }
 

@@ -73,6 +73,14 @@ void Summary::add(const AuditRow& row, const CommittedState& state, double recor
     ++pressure_windows_;
   }
   solver_iterations_ += row.solver_iterations;
+  scalars_.resize(row.scalars.size());
+  for (std::size_t i = 0; i < scalars_.size(); ++i) {
+    ScalarExtent& extent = scalars_[i];
+    extent.lowest = std::min(extent.lowest, row.scalars[i].lowest);
+    extent.highest = std::max(extent.highest, row.scalars[i].highest);
+    extent.largest_imbalance =
+        std::max(extent.largest_imbalance, std::abs(row.scalars[i].imbalance));
+  }
   cfd_ += row.wall_cfd;
   dem_ += row.wall_dem;
   exchange_ += row.wall_exchange;
@@ -99,6 +107,11 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
        std::abs(last_.mass.cumulative_drift));
   line("  momentum handover     {:.2e} relative, in any window", largest_handover_);
   line("  flux closure          {:.2e} of the largest flux, at most", largest_correction_);
+  const std::vector<ScalarName> names = scalar_names(scene);
+  for (std::size_t i = 0; i < scalars_.size(); ++i) {
+    line("  scalar {:<14} {:.15g} .. {:.15g}; budget {:.2e} of its amount, in any window",
+         names[i].name, scalars_[i].lowest, scalars_[i].highest, scalars_[i].largest_imbalance);
+  }
   if (violations_ > 0)
     line("  AUDIT VIOLATIONS      in {} of {} windows (limit {:g}; on_violation: warn)",
          violations_, windows_, scene.coupling.audit.limit);

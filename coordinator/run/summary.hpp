@@ -1,7 +1,9 @@
 // What a run came to, in words that a person understands.
 #pragma once
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "coordinator/coupling/run_step.hpp"
 
@@ -34,6 +36,10 @@ class Summary {
   double largest_imbalance_ = 0, largest_residual_ = 0, largest_handover_ = 0,
          largest_correction_ = 0;
   double cfd_ = 0, dem_ = 0, exchange_ = 0, record_ = 0;  ///< [s]
+  struct ScalarExtent {
+    double lowest = INFINITY, highest = -INFINITY, largest_imbalance = 0;
+  };
+  std::vector<ScalarExtent> scalars_;  ///< over the run
   AuditRow last_;
 };
 

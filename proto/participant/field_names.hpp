@@ -1,6 +1,8 @@
 // The fields that cross between the processes: names, shapes, units, and who gives them.
 #pragma once
 
+#include <string>
+
 namespace fluxpact::field {
 
 // From the particle side, one row a cell.
@@ -31,6 +33,14 @@ inline constexpr auto impulse_taken =
 inline constexpr auto solver_iterations = "solver_iterations";
 inline constexpr auto closure_correction =
     "closure_correction";  ///< largest flux change by the closure over the largest flux [-]
+
+// From the fluid side, for each scalar of the scene (fluid.scalars).
+/// c^{n+1}, one row a cell: [-], or [K] of a temperature.
+inline std::string scalar(const std::string& name) { return "scalar:" + name; }
+/// What left through each boundary face in the window over its length [kg/s], [W] of a temperature.
+inline std::string scalar_flux(const std::string& name) { return "scalar_flux:" + name; }
+/// A number: what sources of the fluid added in the window over its length [kg/s], [W].
+inline std::string scalar_source(const std::string& name) { return "scalar_source:" + name; }
 
 // From both.
 inline constexpr auto wall_seconds = "wall_seconds";  ///< time spent in advance [s]

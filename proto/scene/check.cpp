@@ -332,6 +332,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_box(scene, findings);
   check_patches(scene, findings);
   check_boundaries(scene, findings);
+  check_scalars(scene, findings);
   check_pairs(scene, findings);
   check_insertion(scene, findings);
   check_interphase(scene, findings);

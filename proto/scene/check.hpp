@@ -10,4 +10,7 @@ namespace fluxpact {
 /// alone.
 void check_scene(const Scene& scene, Findings& findings);
 
+/// The part of it for fluid.scalars and fluid.turbulence.
+void check_scalars(const Scene& scene, Findings& findings);
+
 }  // namespace fluxpact

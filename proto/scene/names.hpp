@@ -97,6 +97,17 @@ inline constexpr auto enum_names<Convection> = std::to_array<Named<Convection>>(
     {Convection::limited, "limited"},
 });
 template <>
+inline constexpr auto enum_names<ScalarKind> = std::to_array<Named<ScalarKind>>({
+    {ScalarKind::species, "species"},
+    {ScalarKind::temperature, "temperature"},
+});
+template <>
+inline constexpr auto enum_names<TurbulenceModel> = std::to_array<Named<TurbulenceModel>>({
+    {TurbulenceModel::none, "none"},
+    {TurbulenceModel::smagorinsky, "smagorinsky"},
+    {TurbulenceModel::k_epsilon, "k_epsilon"},
+});
+template <>
 inline constexpr auto enum_names<FluidBackend> = std::to_array<Named<FluidBackend>>({
     {FluidBackend::native, "native"},
 });

@@ -37,6 +37,9 @@ constexpr auto suffixes = std::to_array<Suffix>({
     {"N/m", Dimension::stiffness, 0},
     {"kg/s", Dimension::mass_flow, 0},
     {"g/s", Dimension::mass_flow, -3},
+    {"m2/s", Dimension::diffusivity, 0},
+    {"W/(m.K)", Dimension::conductivity, 0},
+    {"J/(kg.K)", Dimension::heat_capacity, 0},
 });
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -19,6 +19,9 @@ enum class Dimension {
   viscosity,
   stiffness,
   mass_flow,
+  diffusivity,
+  conductivity,
+  heat_capacity,
 };
 
 /// The SI unit in which numbers without a suffix are taken, e.g. "m/s"; empty for Dimension::none.

@@ -144,7 +144,8 @@ std::string unit_table() {
   for (const Dimension dimension :
        {Dimension::time, Dimension::length, Dimension::velocity, Dimension::acceleration,
         Dimension::density, Dimension::pressure, Dimension::viscosity, Dimension::stiffness,
-        Dimension::mass_flow}) {
+        Dimension::mass_flow, Dimension::diffusivity, Dimension::conductivity,
+        Dimension::heat_capacity}) {
     rows += fmt::format("| {} | {} |\n", si_unit(dimension), unit_suffixes(dimension));
   }
   return rows;

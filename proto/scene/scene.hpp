@@ -191,6 +191,45 @@ struct FluidNumerics {
   LegacySettings legacy;
 };
 
+enum class ScalarKind { species, temperature };
+
+/// What a patch does to a scalar.
+struct ScalarBoundarySettings {
+  std::optional<Formula> value;  ///< of what enters with the fluid, and at the wall
+  std::optional<Formula>
+      flux;  ///< into the domain through a wall: [kg/(m² s)] of a species, [W/m²] of heat
+};
+
+/// A field that the fluid carries, c per mass of fluid.
+struct ScalarSettings {
+  ScalarKind kind = ScalarKind::species;
+  double diffusivity = 0;         ///< [m²/s] species: molecular
+  double conductivity = 0;        ///< [W/(m K)] temperature: molecular
+  double heat_capacity = 0;       ///< [J/(kg K)] temperature
+  Formula initial;                ///< [c] at t = 0
+  std::optional<Formula> source;  ///< per volume of fluid: [kg/(m³ s)] or [W/m³]
+  std::map<std::string, ScalarBoundarySettings> boundaries;
+  Convection convection = Convection::limited;
+  double tolerance = 1e-10;  ///< residual of the linear solver over that of the step's start [-]
+};
+
+enum class TurbulenceModel { none, smagorinsky, k_epsilon };
+
+/// Turbulence of what enters through a patch.
+struct TurbulentInletSettings {
+  double intensity = 0.05;  ///< fluctuation over mean velocity [-]
+  double length_scale = 0;  ///< [m]
+};
+
+struct TurbulenceSettings {
+  TurbulenceModel model = TurbulenceModel::none;
+  double smagorinsky_constant = 0.17;  ///< [-]
+  double kinetic_energy = 0;           ///< [m²/s²] k_epsilon: at time 0
+  double dissipation = 0;              ///< [m²/s³] k_epsilon: at time 0
+  double schmidt_number = 0.7;         ///< turbulent, of all scalars [-]
+  std::map<std::string, TurbulentInletSettings> inlets;
+};
+
 struct FluidSettings {
   FluidBackend backend = FluidBackend::native;
   double density = 0;    ///< [kg/m³]
@@ -198,6 +237,8 @@ struct FluidSettings {
   MeshSettings mesh;
   std::map<std::string, BoundarySettings> boundaries;
   InitialSettings initial;
+  std::map<std::string, ScalarSettings> scalars;
+  TurbulenceSettings turbulence;
   FluidNumerics numerics;
 };
 

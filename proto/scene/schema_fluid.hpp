@@ -3,6 +3,7 @@
 
 #include "proto/scene/key.hpp"
 #include "proto/scene/scene.hpp"
+#include "proto/scene/schema_scalars.hpp"
 
 namespace fluxpact {
 
@@ -295,6 +296,11 @@ void describe(Visit& visit, FluidSettings& fluid) {
          .meaning = "One condition for each patch of the mesh, `walls` included."},
         fluid.boundaries);
   visit({.name = "initial", .meaning = "The fluid at time 0."}, fluid.initial);
+  visit({.name = "scalars",
+         .meaning = "Species and temperature that the fluid carries; none costs nothing."},
+        fluid.scalars);
+  visit({.name = "turbulence", .meaning = "What the mesh does not resolve; `none` costs nothing."},
+        fluid.turbulence);
   visit({.name = "numerics", .meaning = "How the fluid is solved."}, fluid.numerics);
 }
 

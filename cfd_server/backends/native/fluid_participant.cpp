@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "cfd_server/scalars/fluid_scalars.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/field_names.hpp"
 
@@ -15,6 +16,12 @@ void add_state(const FluidState& state, Fields& out) {
   out.add(field::velocity, window_velocity(state));
   out.add(field::pressure, std::span<const double>(state.pressure));
   out.add(field::pressure_gradient, window_pressure_gradient(state));
+}
+
+void add_scalar(const std::string& name, const ScalarField& scalar, Fields& out) {
+  out.add(field::scalar(name), std::span<const double>(scalar.value));
+  out.add(field::scalar_flux(name), std::span<const double>(scalar.boundary_flux));
+  out.add_number(field::scalar_source(name), scalar.source);
 }
 
 }  // namespace
@@ -42,6 +49,9 @@ void NativeFluid::configure(const Scene& scene, const Mesh& mesh) {
 void NativeFluid::start(const Fields& in, Fields& out) {
   solver().start(in.scalars(field::voidage, cells_));
   add_state(solver().committed(), out);
+  const FluidScalars* const scalars = solver().scalars();
+  for (int i = 0; scalars != nullptr && i < scalars->count(); ++i)
+    add_scalar(scalars->name(i), scalars->committed(i), out);
 }
 
 void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
@@ -59,6 +69,9 @@ void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
   }
   add_state(state, out);
   out.add(field::impulse_taken, std::span<const Vector3>(impulse_));
+  const FluidScalars* const scalars = solver().scalars();
+  for (int i = 0; scalars != nullptr && i < scalars->count(); ++i)
+    add_scalar(scalars->name(i), scalars->candidate(i), out);
   out.add_number(field::solver_iterations, solver().report().iterations);
   out.add_number(field::closure_correction, solver().report().closure_correction);
   const FluidReport& report = solver().report();

@@ -62,6 +62,27 @@ TEST(AuditColumns, keep_wall_times_out_of_what_two_runs_must_share) {
   EXPECT_EQ(apart, (std::set<std::string>{"wall_cfd", "wall_dem", "wall_exchange"}));
 }
 
+TEST(AuditColumns, of_scalars_come_last_with_their_names) {
+  Scene scene;
+  scene.fluid.scalars["heat"].kind = ScalarKind::temperature;
+  scene.fluid.scalars["tracer"];
+  const std::vector<ScalarName> names = scalar_names(scene);
+  const std::string header = audit_csv_header(names);
+  EXPECT_THAT(header, testing::HasSubstr("wall_exchange,scalar_heat_amount,scalar_heat_in,"));
+  EXPECT_THAT(header, testing::EndsWith("scalar_tracer_imbalance,scalar_tracer_min,"
+                                        "scalar_tracer_max\n"));
+  EXPECT_STREQ(column_unit(names[0], scalar_columns().front()), "J");
+  EXPECT_STREQ(column_unit(names[1], scalar_columns().front()), "kg");
+}
+
+TEST(AuditColumns, of_a_scalar_each_show_a_member_of_their_own) {
+  const ScalarAudit audit{1, 2, 3, 4, 5, 6, 7};
+  double expected = 0;
+  for (const ScalarColumn& column : scalar_columns())
+    EXPECT_EQ(column.value(audit), ++expected) << column.name;
+  EXPECT_EQ(expected, 7);
+}
+
 TEST(AuditReference, has_a_line_with_unit_for_every_column) {
   const std::string text = audit_reference();
   for (const AuditColumn& column : audit_columns()) {

@@ -36,6 +36,20 @@ TEST(Gate, passes_a_value_at_the_limit) {
   EXPECT_TRUE(judge(row, limit).pass);
 }
 
+TEST(Gate, names_the_worst_of_several_scalars) {
+  AuditRow row = good_row();
+  row.scalars.resize(3);
+  row.scalars[1].imbalance = -1e-9;
+  row.scalars[2].imbalance = 1e-11;
+  const Verdict verdict = judge(row, limit);
+  EXPECT_FALSE(verdict.pass);
+  EXPECT_STREQ(verdict.quantity, "scalar_imbalance");
+  EXPECT_EQ(verdict.value, 1e-9);
+  EXPECT_THAT(describe(verdict, row), testing::HasSubstr("scalar"));
+  row.scalars[0].imbalance = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(judge(row, limit).pass);
+}
+
 struct Fault {
   const char* quantity;
   void (*set)(AuditRow&, double);

@@ -61,6 +61,12 @@ def check_audit():
     return len(rows)
 
 
+def scalars():
+    """Datasets of the run's scalars: each has a column of its amount."""
+    end = "_amount"
+    return {name[: -len(end)] for name in file["audit"] if name.startswith("scalar_") and name.endswith(end)}
+
+
 def check_records():
     for kind in ("fields", "particles"):
         for index, (name, group) in enumerate(file.get(kind, {}).items()):
@@ -69,6 +75,7 @@ def check_records():
     for group in file.get("fields", {}).values():
         expected = {"voidage": (cells,), "velocity": (cells, 3), "pressure": (cells,),
                     "drag_coefficient": (cells,), "particle_velocity": (cells, 3), "face_flux": (faces,)}
+        expected.update({name: (cells,) for name in scalars()})
         check({key: item.shape for key, item in group.items()} == expected, group.name, list(group.items()))
     for group in file.get("particles", {}).values():
         check(set(group) == {"id", "position", "velocity", "spin", "radius", "density"}, list(group))

@@ -59,6 +59,33 @@ std::vector<std::vector<std::string>> read_csv(const std::filesystem::path& path
   return rows;
 }
 
+TEST(Recorder, keeps_scalars_of_the_scene_in_all_files) {
+  const ScratchFolder folder;
+  const Mesh mesh = sample_box();
+  RunDescription with_scalars = run;
+  with_scalars.scalars = {{"heat", ScalarKind::temperature}, {"tracer", ScalarKind::species}};
+  Recorder recorder(folder / "run", mesh, with_scalars);
+  const SampleState state(mesh, 0, 1);
+  const std::vector<double> warm(static_cast<std::size_t>(mesh.cells()), 300.5);
+  FieldRecord fields = state.fields();
+  fields.scalars = {warm, state.scalar};
+  recorder.record_fields({0, 0}, fields);
+  AuditRow row = sample_row(1);
+  row.scalars = {{1, 2, 3, 4, 5, 6, 7}, {8, 9, 10, 11, 12, 13, 14}};
+  recorder.append(row);
+  recorder.close();
+  const auto csv = read_csv(folder / "run" / "audit.csv");
+  ASSERT_EQ(csv.size(), 2U);
+  EXPECT_EQ(csv[0].size(), csv[1].size());
+  EXPECT_EQ(csv[0].back(), "scalar_tracer_max");
+  EXPECT_EQ(csv[1].back(), "14");
+  // The independent reader compares the columns of both files and follows the index.
+  EXPECT_EQ(check_record(folder / "run", mesh), "rows 1 fields and particles 1 0\n");
+  const std::string index = read_file(folder / "run" / "results.xdmf");
+  EXPECT_THAT(index, HasSubstr("/fields/000000/scalar_tracer"));
+  EXPECT_THAT(index, HasSubstr("/fields/000000/scalar_heat"));
+}
+
 TEST(Recorder, writes_what_a_reader_without_our_code_understands) {
   const ScratchFolder folder;
   for (const Mesh& mesh :

@@ -39,7 +39,7 @@ void check_entry(const std::string& name, const BoundarySettings& entry) {
 }
 
 /// Length of the path from the cell's centre to the wall, along its normal [m].
-double depth(const Stencil& s, std::size_t face) { return s.area_size[face] / s.conductance[face]; }
+double depth(const Stencil& s, int face) { return s.area_size[face] / s.conductance[face]; }
 
 PatchCondition make_condition(const BoundarySettings& entry, const Mesh& mesh, const Patch& patch) {
   const VectorFormula velocity = entry.superficial    ? *entry.superficial
@@ -78,7 +78,7 @@ void add_kinds(const BoundarySettings& entry, const Stencil& s, const PatchCondi
     if (entry.type == BoundaryType::pressure) conditions.kind[b] = FaceKind::pressure;
     if (entry.type != BoundaryType::wall || entry.slip == Slip::none) continue;
     conditions.kind[b] = FaceKind::slip;
-    const double distance = depth(s, static_cast<std::size_t>(b + s.internal_faces));
+    const double distance = depth(s, b + s.internal_faces);
     conditions.grip[b] = entry.slip == Slip::free ? 0.0 : distance / (distance + entry.slip_length);
   }
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -46,7 +48,8 @@ PatchCondition make_condition(const BoundarySettings& entry, const Mesh& mesh, c
                                  : entry.interstitial ? *entry.interstitial
                                                       : entry.velocity;
   const bool mass_flow = entry.type == BoundaryType::mass_flow;
-  PatchCondition condition{.first = patch.first - mesh.internal_faces(),
+  PatchCondition condition{.name = patch.name,
+                           .first = patch.first - mesh.internal_faces(),
                            .size = patch.size,
                            .type = entry.type,
                            .is_interstitial = entry.interstitial.has_value(),
@@ -83,11 +86,19 @@ void add_kinds(const BoundarySettings& entry, const Stencil& s, const PatchCondi
   }
 }
 
+[[noreturn]] void refuse(const PatchCondition& patch, const Vector3& x, double time) {
+  throw NumericsError(
+      "fluid: the formula of fluid.boundaries.{} has no finite value at ({:.6g}, {:.6g}, {:.6g}) "
+      "m, t = {} s; it must be finite at every face of the patch, at all times",
+      patch.name, x.x(), x.y(), x.z(), time);
+}
+
 /// p_b − ρ g·x_f [Pa].
 double boundary_pressure(const BoundaryConditions& conditions, const PatchCondition& patch, int b,
                          double time) {
   const Vector3& x = conditions.centre[b];
   const double given = patch.scalar(x, time) * patch.factor.shape(x) * patch.factor.pace(time);
+  if (!std::isfinite(given)) refuse(patch, x, time);
   return given - conditions.density * conditions.gravity.dot(x);
 }
 
@@ -115,6 +126,7 @@ void evaluate(const Stencil& s, const BoundaryConditions& conditions, const Patc
         break;
       }
     }
+    if (!given[b].allFinite()) refuse(patch, x, time);
   }
 }
 

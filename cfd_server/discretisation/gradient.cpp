@@ -8,7 +8,7 @@ namespace {
 
 /// From the cell's centre to where the other value stands.
 Vector3 reach(const Stencil& s, int side) {
-  return static_cast<double>(s.side_sign[side]) * s.delta[s.side_face[side]];
+  return static_cast<double>(s.side_sign[side]) * s.delta(s.side_face[side]);
 }
 
 template <class Coefficients>

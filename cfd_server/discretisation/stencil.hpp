@@ -30,8 +30,7 @@ struct Stencil {
       weight;  ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
   std::vector<double> conductance;  ///< g = |A|²/max(A·d, |A||d|/20) [m]
   std::vector<Vector3>
-      cross;          ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
-  AxisVectors delta;  ///< d [m]
+      cross;  ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
   AxisVectors from_owner;      ///< x_f − x_P [m]
   AxisVectors from_neighbour;  ///< x_f − x_N [m], at N's side of a periodic pair; internal faces
 
@@ -56,6 +55,11 @@ struct Stencil {
   bool uniform = false;  ///< a lattice with equal cells
 
   int boundary_faces() const { return faces - internal_faces; }
+  /// d [m] of a face.
+  Vector3 delta(int face) const {
+    return face < internal_faces ? Vector3(from_owner[face] - from_neighbour[face])
+                                 : from_owner[face];
+  }
 };
 
 /// Throws ConfigError naming the face if d·A is not positive inside the mesh.

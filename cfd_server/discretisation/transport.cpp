@@ -41,7 +41,7 @@ void add_higher_order(const Stencil& s, const TransportCoefficients& c, const Ce
     const int upwind = out ? p : n;
     const Vector3 step =
         out ? Vector3(velocity[n] - velocity[p]) : Vector3(velocity[p] - velocity[n]);
-    const Vector3 along = out ? s.delta[f] : Vector3(-s.delta[f]);
+    const Vector3 along = out ? s.delta(f) : Vector3(-s.delta(f));
     const Vector3 to_face = out ? s.from_owner[f] : s.from_neighbour[f];
     const double weight = out ? s.weight[f] : 1 - s.weight[f];
     const Vector3 part = c.mass_flux[f] * higher_order_part(scheme, step, gradient[upwind] * along,

@@ -91,19 +91,21 @@ void add_pressure_flux(const Stencil& s, const BoundaryValues& values, const Fac
   }
 }
 
-void predict_flux(const Stencil& s, std::span<const double> old_flux,
-                  std::span<const Vector3> superficial, std::span<const Vector3> old_superficial,
-                  std::span<double> flux) {
+void predict_flux(const Stencil& s, const FluidState& old_state, double density,
+                  std::span<const Vector3> superficial, std::span<double> flux) {
+  const auto change_of = [&](int cell) -> Vector3 {
+    return superficial[cell] - old_state.voidage[cell] * old_state.velocity[cell];
+  };
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) {
     const int p = s.owner[f];
     const double w = s.weight[f];
-    Vector3 change = superficial[p] - old_superficial[p];
+    Vector3 change = change_of(p);
     if (f < s.internal_faces) {
       const int n = s.neighbour[f];
-      change = (1 - w) * change + w * (superficial[n] - old_superficial[n]);
+      change = (1 - w) * change + w * change_of(n);
     }
-    flux[f] = old_flux[f] + change.dot(s.area[f]);
+    flux[f] = old_state.face_flux[f] / density + change.dot(s.area[f]);
   }
 }
 

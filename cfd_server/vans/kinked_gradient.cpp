@@ -20,7 +20,7 @@ void kinked_gradient_coefficients(const Stencil& s, const MomentumCoefficients& 
     Matrix3 normal = Matrix3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
-      const Vector3 d = s.side_sign[side] * s.delta[s.side_face[side]];
+      const Vector3 d = s.side_sign[side] * s.delta(s.side_face[side]);
       const double trust = other >= 0 ? std::min(1.0, own / resistance(other)) : 1.0;
       coefficients[side] = trust / d.squaredNorm() * d;
       normal += coefficients[side] * d.transpose();
@@ -62,7 +62,7 @@ void kinked_gradient(const Stencil& s, const BoundaryConditions& conditions,
         rise = values.pressure[f - s.internal_faces] - in.pressure[cell];
       } else {
         const Vector3 normal = s.area[f] / s.area_size[f];
-        const Vector3 along = s.delta[f] - normal_path * normal;
+        const Vector3 along = s.delta(f) - normal_path * normal;
         rise = normal_path * local(cell, f) / s.area_size[f] + along.dot(gradient[cell]);
       }
       sum += rise * coefficients[side];

@@ -122,26 +122,27 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
 }
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
-void close(const Step& step, WindowFields& w, FluidReport& report) {
+void close(const Step& step, std::span<double> mass_flux, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int f = 0; f < s.faces; ++f) w.mass_flux[f] = problem.fluid.density * w.flux[f];
+  for (int f = 0; f < s.faces; ++f) mass_flux[f] = problem.fluid.density * w.flux[f];
   if (problem.continuity == Continuity::legacy) return;
-  const double correction = close_fluxes(w.tree, problem.stencil, w.storage, w.mass_flux);
+  const double correction = close_fluxes(w.tree, problem.stencil, w.storage, mass_flux);
   // In a fluid at rest all fluxes are rounding, and so is their correction: no error of the solver.
   const double rounding = 1e-13 * problem.fluid.density *
                           largest(problem.stencil, problem.stencil.volume) / step.window.length;
   report.closure_correction =
-      correction > rounding ? correction / largest(problem.stencil, w.mass_flux) : 0.0;
+      correction > rounding ? correction / largest(problem.stencil, mass_flux) : 0.0;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int f = 0; f < s.faces; ++f) w.flux[f] = w.mass_flux[f] / problem.fluid.density;
+  for (int f = 0; f < s.faces; ++f) w.flux[f] = mass_flux[f] / problem.fluid.density;
 }
 
 }  // namespace
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
+  problem.lattice = mesh.lattice;
   problem.stencil = make_stencil(mesh, threads_for(scene.fluid.numerics.threads, mesh.cells()));
   problem.conditions = read_boundaries(scene, mesh, problem.stencil);
   problem.regions = find_regions(problem.stencil, problem.conditions);
@@ -166,10 +167,11 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   return problem;
 }
 
-WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
+WindowFields::WindowFields(const FluidProblem& problem)
     : tree(make_closure_tree(problem.stencil, problem.conditions, problem.regions)),
       predictor(problem.stencil, slip_faces(problem.stencil, problem.conditions)),
-      pressure_solver(make_pressure_solver(problem.numerics.solver, mesh, problem.stencil)) {
+      pressure_solver(
+          make_pressure_solver(problem.numerics.solver, problem.lattice, problem.stencil)) {
   const Stencil& s = problem.stencil;
   const auto cell_count = static_cast<std::size_t>(s.cells);
   const auto face_count = static_cast<std::size_t>(s.faces);
@@ -179,10 +181,9 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   matrix.diagonal.assign(cell_count, 0.0);
   matrix.coupling.assign(static_cast<std::size_t>(s.internal_faces), 0.0);
   for (auto* values : {&storage, &source, &pressure, &rhs}) values->assign(cell_count, 0.0);
-  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux})
-    values->assign(face_count, 0.0);
-  for (auto* values : {&old_superficial, &superficial, &velocity, &velocity_before, &force,
-                       &specific_force, &closing_gradient}) {
+  for (auto* values : {&flux, &explicit_part}) values->assign(face_count, 0.0);
+  for (auto* values :
+       {&superficial, &velocity, &velocity_before, &force, &specific_force, &closing_gradient}) {
     values->assign(cell_count, Vector3::Zero());
   }
   if (problem.continuity == Continuity::legacy) {
@@ -220,11 +221,8 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
     if (time.two_steps())
       change -= time.before * (old_state.voidage[cell] - old_state.before.voidage[cell]);
     w.storage[cell] = density * s.volume[cell] * change / time.step;
-    w.old_superficial[cell] = old_state.voidage[cell] * old_state.velocity[cell];
     w.pressure[cell] = old_state.pressure[cell] - problem.conditions.level;
   }
-#pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int f = 0; f < s.faces; ++f) w.old_flux[f] = old_state.face_flux[f] / density;
   if (problem.continuity == Continuity::conservative) {
     settle_closed_regions(s, problem.regions, w.boundary.flux, density, step.window.length,
                           step.window.step, w.storage);
@@ -259,7 +257,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
   report.seconds.setup += clock.lap();
 }
 
-void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) {
+void correct(const Step& step, std::span<double> mass_flux, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   LapClock clock;
@@ -272,7 +270,7 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
     solve_legacy_continuity(step, w, report);
   }
   clock.lap();  // the solve has its own
-  if (last) close(step, w, report);
+  if (!mass_flux.empty()) close(step, mass_flux, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
 #pragma omp parallel for schedule(static) num_threads(s.threads)
@@ -287,18 +285,21 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
 }
 
 void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
-  const LevelBefore& before = step.old_state.before;
+  const FluidState& old_state = step.old_state;
+  const LevelBefore& before = old_state.before;
   const Stencil& s = step.problem.stencil;
+  const double density = step.problem.fluid.density;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
-    Vector3 start = w.old_superficial[cell];
+    Vector3 start = old_state.voidage[cell] * old_state.velocity[cell];
     if (w.time.two_steps()) {
       start = extrapolated(w.time, start, Vector3(before.voidage[cell] * before.velocity[cell]));
     }
     w.velocity[cell] = start / step.solids.voidage[cell];
   }
-  std::ranges::copy(w.old_flux, w.flux.begin());
-  correct(step, false, w, report);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.flux[f] = old_state.face_flux[f] / density;
+  correct(step, {}, w, report);
 }
 
 void predict(const Step& step, WindowFields& w, FluidReport& report) {
@@ -314,7 +315,7 @@ void predict(const Step& step, WindowFields& w, FluidReport& report) {
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell)
     w.superficial[cell] = step.solids.voidage[cell] * w.velocity[cell];
-  predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);
+  predict_flux(s, step.old_state, step.problem.fluid.density, w.superficial, w.flux);
 }
 
 }  // namespace fluxpact

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cfd_server/linear/pressure_solver.hpp"
@@ -18,6 +19,7 @@ namespace fluxpact {
 
 /// Fixed for a run.
 struct FluidProblem {
+  std::optional<Lattice> lattice;  ///< of the mesh
   Stencil stencil;
   BoundaryConditions conditions;
   FluidRegions regions;
@@ -33,7 +35,7 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh);
 
 /// Fields and coefficients of the step in hand. One entry a cell unless stated.
 struct WindowFields {
-  explicit WindowFields(const FluidProblem& problem, const Mesh& mesh);
+  explicit WindowFields(const FluidProblem& problem);
 
   TimeCoefficients time;
   ViscosityFields viscosity;  ///< of turbulence, set before the step; empty without
@@ -47,16 +49,13 @@ struct WindowFields {
 
   std::vector<double> storage;      ///< ρ V dε/dt [kg/s]
   std::vector<double> source;       ///< right-hand side of continuity [m³/s]
-  std::vector<double> old_flux;     ///< φ^n [m³/s], one a face
   std::vector<double> convecting;   ///< Φ [kg/s] at the step's end, extrapolated; time: bdf2 only
   std::vector<double> ones;         ///< χ of pressure model b; empty with model a
   std::vector<double> flux;         ///< φ of the last corrector [m³/s], one a face
   std::vector<double> flux_before;  ///< φ from which a corrector started [m³/s], one a face
   std::vector<double> explicit_part;  ///< [m³/s], one a face
-  std::vector<double> mass_flux;      ///< Φ [kg/s], one a face
   std::vector<double> pressure;       ///< p − level [Pa]
   std::vector<double> rhs;
-  std::vector<Vector3> old_superficial;     ///< ε^n u^n
   std::vector<Vector3> superficial;         ///< ε u of the last corrector
   std::vector<Vector3> velocity;            ///< u of the last corrector
   std::vector<Vector3> velocity_before;     ///< u from which it started
@@ -91,9 +90,11 @@ struct Step {
 void open_step(const Step& step, const TimeCoefficients& time, WindowFields& fields,
                FluidReport& report);
 
-/// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With
-/// `last` the fluxes are closed before the velocity is rebuilt from them.
-void correct(const Step& step, bool last, WindowFields& fields, FluidReport& report);
+/// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. The
+/// last one is given `mass_flux` (Φ [kg/s], one a face; empty in others): the fluxes are closed and
+/// put there before the velocity is rebuilt from them.
+void correct(const Step& step, std::span<double> mass_flux, WindowFields& fields,
+             FluidReport& report);
 
 /// Before the predictor: start from ε^n u^n/ε^{n+1} and find the pressure that goes with the new
 /// voidage and drag. A cell that leaves the bed would otherwise keep the bed's gradient without its

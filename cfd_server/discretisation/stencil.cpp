@@ -15,7 +15,7 @@ void add_faces(const Mesh& mesh, Stencil& s) {
   std::vector<Vector3> areas, from_owners, from_neighbours;
   for (auto* vectors : {&areas, &s.cross, &from_owners, &from_neighbours})
     vectors->reserve(static_cast<std::size_t>(s.faces));
-  for (auto* values : {&s.area_size, &s.weight, &s.conductance})
+  for (auto* values : {&s.weight, &s.conductance})
     values->reserve(static_cast<std::size_t>(s.faces));
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
@@ -34,7 +34,6 @@ void add_faces(const Mesh& mesh, Stencil& s) {
     const double projected = std::max(delta.dot(area), 0.05 * delta.norm() * area.norm());
     const double conductance = area.squaredNorm() / projected;
     areas.push_back(area);
-    s.area_size.push_back(area.norm());
     const double within_owner = std::abs(from_owner.dot(area));
     const double within_neighbour = std::abs((from_owner - delta).dot(area));
     s.weight.push_back(internal ? within_owner / (within_owner + within_neighbour) : 1.0);

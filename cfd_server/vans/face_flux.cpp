@@ -63,19 +63,20 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
     const int p = s.owner[f];
     const double w = s.weight[f];
     Vector3 force = w * in.specific_force[p];
-    Vector3 value = in.superficial[p] + in.superficial_gradient[p] * s.from_owner[f];
+    Vector3 value = in.superficial[p] + s.from_owner.multiplied(in.superficial_gradient[p], f);
     Vector3 slope = Vector3::Zero();
     if (!s.orthogonal)
       slope = internal ? Vector3((1 - w) * in.pressure_gradient[p]) : in.pressure_gradient[p];
     if (internal) {
       const int n = s.neighbour[f];
       force += (1 - w) * in.specific_force[n];
-      value = 0.5 * (value + in.superficial[n] + in.superficial_gradient[n] * s.from_neighbour[f]);
+      value = 0.5 * (value + in.superficial[n] +
+                     s.from_neighbour.multiplied(in.superficial_gradient[n], f));
       if (!s.orthogonal) slope += w * in.pressure_gradient[n];
     }
     const double rebuilt = rebuilt_share(s, f);
-    const double face_value = rebuilt * value.dot(s.area[f]) + (1 - rebuilt) * in.last_flux[f];
-    double driving = force.dot(s.area[f]) + c.memory[f] + c.transport_resistance[f] * face_value;
+    const double face_value = rebuilt * s.area.dot(value, f) + (1 - rebuilt) * in.last_flux[f];
+    double driving = s.area.dot(force, f) + c.memory[f] + c.transport_resistance[f] * face_value;
     if (!s.orthogonal) driving -= s.cross[f].dot(slope);
     flux[f] = c.mobility[f] * driving;
   }

@@ -34,12 +34,12 @@ void balance_outlets(const FluidProblem& problem, std::vector<double>& flux) {
     const int region = problem.regions.of_cell[s.owner[f]];
     surplus[region] += flux[f];
     if (problem.conditions.kind[f - s.internal_faces] == FaceKind::pressure)
-      outlet_area[region] += s.area_size[f];
+      outlet_area[region] += s.area_size(f);
   }
   for (int f = s.internal_faces; f < s.faces; ++f) {
     if (problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
     const int region = problem.regions.of_cell[s.owner[f]];
-    flux[f] -= surplus[region] * s.area_size[f] / outlet_area[region];
+    flux[f] -= surplus[region] * s.area_size(f) / outlet_area[region];
   }
 }
 
@@ -115,7 +115,7 @@ void VansSolver::Impl::warn_once() {
 void VansSolver::Impl::advance_step(const FluidState& from, const Window& window,
                                     const SolidsInput& solids, const Progress& progress,
                                     FluidState& to) {
-  const Step step{problem, from, window, solids};
+  const Step step{problem, from, window, solids, to};
   const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
   if (turbulence) fields->viscosity = turbulence->prepare(from.velocity, fields->boundary);
   open_step(step, time, *fields, report);
@@ -123,13 +123,11 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
   if (progress) progress();
   predict(step, *fields, report);
   for (int corrector = 1; corrector <= problem.numerics.correctors; ++corrector) {
-    const bool last = corrector == problem.numerics.correctors;
-    correct(step, last ? std::span(to.face_flux) : std::span<double>(), *fields, report);
+    correct(step, corrector == problem.numerics.correctors, *fields, report);
     if (progress) progress();
   }
   std::ranges::copy(solids.voidage, to.voidage.begin());
   std::ranges::copy(fields->velocity, to.velocity.begin());
-  std::ranges::copy(fields->closing_gradient, to.pressure_gradient.begin());
   for (int cell = 0; cell < problem.stencil.cells; ++cell)
     to.pressure[cell] = fields->pressure[cell] + problem.conditions.level;
   to.step = window.length;

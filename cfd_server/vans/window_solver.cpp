@@ -16,7 +16,7 @@ std::vector<SlipFace> slip_faces(const Stencil& s, const BoundaryConditions& con
   std::vector<SlipFace> faces;
   for (int f = s.internal_faces; f < s.faces; ++f) {
     if (conditions.kind[f - s.internal_faces] != FaceKind::slip) continue;
-    faces.push_back({f, s.owner[f], s.area[f] / s.area_size[f],
+    faces.push_back({f, s.owner[f], s.area[f] / s.area_size(f),
                      1 - conditions.grip[f - s.internal_faces], 0.0});
   }
   return faces;
@@ -47,17 +47,16 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   gradient(s, problem.gradient, w.superficial, w.jump, w.superficial_gradient);
 }
 
-/// Pressure for the source in hand, and the flux that it drives.
+/// Pressure for the source in hand; to the explicit part in `flux` comes what it drives.
 void solve_continuity(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   LapClock clock;
-  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
+  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.flux, w.rhs);
   report.seconds.assembly += clock.lap();
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
   report.seconds.pressure += clock.lap();
-  std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
   if (!s.orthogonal) {
     kinked_gradient(
@@ -67,25 +66,26 @@ void solve_continuity(const Step& step, WindowFields& w, FluidReport& report) {
   report.seconds.assembly += clock.lap();
 }
 
+/// The explicit part, which may take the place of the last flux.
 void evaluate_explicit_flux(const FluidProblem& problem, std::span<const double> last_flux,
-                            WindowFields& w, FluidReport& report) {
+                            WindowFields& w, std::span<double> explicit_part, FluidReport& report) {
   LapClock clock;
   explicit_flux(
       problem.stencil, problem.conditions, w.boundary, w.faces,
       {w.specific_force, w.superficial, w.superficial_gradient, last_flux, w.pressure_slope},
-      w.explicit_part);
+      explicit_part);
   report.seconds.assembly += clock.lap();
 }
 
 /// Pressure and fluxes; on a non-orthogonal mesh again with the slope of the pressure just found.
 void solve_fluxes(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
-  evaluate_explicit_flux(problem, w.flux, w, report);
+  if (!problem.stencil.orthogonal) std::ranges::copy(w.flux, w.flux_before.begin());
+  evaluate_explicit_flux(problem, w.flux, w, w.flux, report);
   if (problem.stencil.orthogonal) return solve_continuity(step, w, report);
-  std::ranges::copy(w.flux, w.flux_before.begin());
   solve_continuity(step, w, report);
   for (int again = 0; again < problem.numerics.non_orthogonal_correctors; ++again) {
-    evaluate_explicit_flux(problem, w.flux_before, w, report);
+    evaluate_explicit_flux(problem, w.flux_before, w, w.flux, report);
     solve_continuity(step, w, report);
   }
 }
@@ -111,6 +111,7 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
     legacy_source(s, step.old_state.voidage, step.solids.voidage, w.voidage_gradient,
                   w.interstitial, step.window.length, w.source);
     std::ranges::copy(w.flux, w.flux_before.begin());
+    std::ranges::copy(w.explicit_part, w.flux.begin());
     solve_continuity(step, w, report);
     ++report.legacy_iterations;
     change = 0;
@@ -122,7 +123,8 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
 }
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
-void close(const Step& step, std::span<double> mass_flux, WindowFields& w, FluidReport& report) {
+void close(const Step& step, WindowFields& w, FluidReport& report) {
+  const std::span<double> mass_flux = step.new_state.face_flux;
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
@@ -181,13 +183,13 @@ WindowFields::WindowFields(const FluidProblem& problem)
   matrix.diagonal.assign(cell_count, 0.0);
   matrix.coupling.assign(static_cast<std::size_t>(s.internal_faces), 0.0);
   for (auto* values : {&storage, &source, &pressure, &rhs}) values->assign(cell_count, 0.0);
-  for (auto* values : {&flux, &explicit_part}) values->assign(face_count, 0.0);
-  for (auto* values :
-       {&superficial, &velocity, &velocity_before, &force, &specific_force, &closing_gradient}) {
+  flux.assign(face_count, 0.0);
+  for (auto* values : {&superficial, &velocity, &velocity_before, &force, &specific_force}) {
     values->assign(cell_count, Vector3::Zero());
   }
   if (problem.continuity == Continuity::legacy) {
-    for (auto* values : {&face_scale, &face_voidage, &interstitial_flux, &flux_before})
+    for (auto* values :
+         {&explicit_part, &face_scale, &face_voidage, &interstitial_flux, &flux_before})
       values->assign(face_count, 1.0);
     for (auto* values : {&voidage_gradient, &interstitial})
       values->assign(cell_count, Vector3::Zero());
@@ -257,7 +259,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
   report.seconds.setup += clock.lap();
 }
 
-void correct(const Step& step, std::span<double> mass_flux, WindowFields& w, FluidReport& report) {
+void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   LapClock clock;
@@ -266,11 +268,11 @@ void correct(const Step& step, std::span<double> mass_flux, WindowFields& w, Flu
   if (problem.continuity == Continuity::conservative) {
     solve_fluxes(step, w, report);
   } else {
-    evaluate_explicit_flux(problem, w.flux, w, report);
+    evaluate_explicit_flux(problem, w.flux, w, w.explicit_part, report);
     solve_legacy_continuity(step, w, report);
   }
   clock.lap();  // the solve has its own
-  if (!mass_flux.empty()) close(step, mass_flux, w, report);
+  if (last) close(step, w, report);
   std::swap(w.velocity, w.velocity_before);
   reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.velocity);
 #pragma omp parallel for schedule(static) num_threads(s.threads)
@@ -280,7 +282,7 @@ void correct(const Step& step, std::span<double> mass_flux, WindowFields& w, Flu
                   w.pressure_slope, w.velocity);
   }
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
-                 w.closing_gradient);
+                 step.new_state.pressure_gradient);
   report.seconds.closure += clock.lap();
 }
 
@@ -299,7 +301,7 @@ void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
   }
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) w.flux[f] = old_state.face_flux[f] / density;
-  correct(step, {}, w, report);
+  correct(step, false, w, report);
 }
 
 void predict(const Step& step, WindowFields& w, FluidReport& report) {
@@ -308,8 +310,9 @@ void predict(const Step& step, WindowFields& w, FluidReport& report) {
   // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred
   // parts included.
   std::swap(w.velocity, w.velocity_before);
-  report.predictor_iterations += predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
-                                                  w.closing_gradient, w.predictor, w.velocity);
+  report.predictor_iterations +=
+      predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
+                       step.new_state.pressure_gradient, w.predictor, w.velocity);
   report.seconds.predictor += clock.lap();
   if (s.uniform) return;  // no face value of the flux enters
 #pragma omp parallel for schedule(static) num_threads(s.threads)

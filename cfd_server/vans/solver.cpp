@@ -121,10 +121,15 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
   open_step(step, time, *fields, report);
   pre_correct(step, *fields, report);
   if (progress) progress();
-  predict(step, *fields, report);
-  for (int corrector = 1; corrector <= problem.numerics.correctors; ++corrector) {
-    correct(step, corrector == problem.numerics.correctors, *fields, report);
-    if (progress) progress();
+  for (int outer = 1; outer <= problem.numerics.outer_iterations; ++outer) {
+    if (outer > 1) renew_convection(step, *fields, report);
+    predict(step, *fields, report);
+    for (int corrector = 1; corrector <= problem.numerics.correctors; ++corrector) {
+      const bool last =
+          outer == problem.numerics.outer_iterations && corrector == problem.numerics.correctors;
+      correct(step, last, *fields, report);
+      if (progress) progress();
+    }
   }
   std::ranges::copy(solids.voidage, to.voidage.begin());
   std::ranges::copy(fields->velocity, to.velocity.begin());

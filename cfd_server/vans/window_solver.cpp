@@ -140,6 +140,27 @@ void close(const Step& step, WindowFields& w, FluidReport& report) {
   for (int f = 0; f < s.faces; ++f) w.flux[f] = mass_flux[f] / problem.fluid.density;
 }
 
+/// The coefficients of momentum, faces and pressure for this convecting flux [kg/s].
+void assemble(const Step& step, std::span<const double> convecting, WindowFields& w,
+              FluidReport& report) {
+  LapClock clock;
+  const FluidProblem& problem = step.problem;
+  const Stencil& s = problem.stencil;
+  const auto voidage = step.solids.voidage;
+  assemble_momentum(s, problem.conditions, problem.fluid, step.old_state, step.solids, w.time,
+                    convecting, w.viscosity, w.momentum);
+  assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w),
+                 step.old_state, w.time, w.faces);
+  if (!s.orthogonal) {
+    kinked_gradient_coefficients(s, w.momentum, voidage, pressure_share(step, w),
+                                 w.slope_coefficients);
+  }
+  assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
+  report.seconds.assembly += clock.lap();
+  w.pressure_solver->setup(w.matrix);
+  report.seconds.setup += clock.lap();
+}
+
 }  // namespace
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
@@ -195,7 +216,8 @@ WindowFields::WindowFields(const FluidProblem& problem)
       values->assign(cell_count, Vector3::Zero());
     own_gradient.assign(cell_count, Matrix3::Zero());
   }
-  if (problem.numerics.time == TimeScheme::bdf2) convecting.assign(face_count, 0.0);
+  if (problem.numerics.time == TimeScheme::bdf2 || problem.numerics.outer_iterations > 1)
+    convecting.assign(face_count, 0.0);
   if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
   if (!s.orthogonal) {
     pressure_slope.assign(cell_count, Vector3::Zero());
@@ -244,19 +266,9 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
     }
     convecting = w.convecting;
   }
-  assemble_momentum(s, problem.conditions, problem.fluid, old_state, step.solids, time, convecting,
-                    w.viscosity, w.momentum);
-  assemble_faces(s, problem.conditions, w.momentum, voidage, pressure_share(step, w), old_state,
-                 time, w.faces);
-  if (!s.orthogonal) {
-    kinked_gradient_coefficients(s, w.momentum, voidage, pressure_share(step, w),
-                                 w.slope_coefficients);
-    std::ranges::copy(old_state.pressure_gradient, w.pressure_slope.begin());
-  }
-  assemble_pressure_matrix(s, problem.conditions, problem.regions, w.faces, w.face_scale, w.matrix);
+  if (!s.orthogonal) std::ranges::copy(old_state.pressure_gradient, w.pressure_slope.begin());
   report.seconds.assembly += clock.lap();
-  w.pressure_solver->setup(w.matrix);
-  report.seconds.setup += clock.lap();
+  assemble(step, convecting, w, report);
 }
 
 void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) {
@@ -302,14 +314,21 @@ void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) w.flux[f] = old_state.face_flux[f] / density;
   correct(step, false, w, report);
+  // `force` belongs to the velocity before: the predictor starts there, deferred parts included.
+  std::swap(w.velocity, w.velocity_before);
+}
+
+void renew_convection(const Step& step, WindowFields& w, FluidReport& report) {
+  const Stencil& s = step.problem.stencil;
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.convecting[f] = step.problem.fluid.density * w.flux[f];
+  assemble(step, w.convecting, w, report);
+  evaluate_cells(step, w);
 }
 
 void predict(const Step& step, WindowFields& w, FluidReport& report) {
   const Stencil& s = step.problem.stencil;
   LapClock clock;
-  // `force` still belongs to the velocity before the pre-pass: the predictor starts there, deferred
-  // parts included.
-  std::swap(w.velocity, w.velocity_before);
   report.predictor_iterations +=
       predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
                        step.new_state.pressure_gradient, w.predictor, w.velocity);

@@ -49,7 +49,7 @@ struct WindowFields {
 
   std::vector<double> storage;      ///< ρ V dε/dt [kg/s]
   std::vector<double> source;       ///< right-hand side of continuity [m³/s]
-  std::vector<double> convecting;   ///< Φ [kg/s] at the step's end, extrapolated; time: bdf2 only
+  std::vector<double> convecting;   ///< Φ [kg/s] at the step's end; bdf2 or outer iterations only
   std::vector<double> ones;         ///< χ of pressure model b; empty with model a
   std::vector<double> flux;         ///< φ of the last corrector [m³/s], one a face
   std::vector<double> flux_before;  ///< φ from which a corrector started [m³/s], one a face
@@ -99,6 +99,9 @@ void correct(const Step& step, bool last, WindowFields& fields, FluidReport& rep
 /// voidage and drag. A cell that leaves the bed would otherwise keep the bed's gradient without its
 /// drag, and shoot up.
 void pre_correct(const Step& step, WindowFields& fields, FluidReport& report);
+
+/// Before the predictor of a further outer iteration: the newest flux convects.
+void renew_convection(const Step& step, WindowFields& fields, FluidReport& report);
 
 /// Implicit momentum with the gradient in hand.
 void predict(const Step& step, WindowFields& fields, FluidReport& report);

@@ -118,10 +118,10 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
   line("  particles             {} ({:.6g} kg)", last_.particle_count, last_.particle_mass);
   if (pressure_windows_ > 0) {
     const double drop = pressure_drop_.value() / static_cast<double>(pressure_windows_);
-    line(
-        "  pressure drop         {:.4g} Pa (mean of the second half); bed weight per area {:.4g} "
-        "Pa",
-        drop, weight_per_area_);
+    const std::string weight =
+        last_.particle_count > 0 ? fmt::format("; bed weight per area {:.4g} Pa", weight_per_area_)
+                                 : std::string{};
+    line("  pressure drop         {:.4g} Pa (mean of the second half){}", drop, weight);
   }
   line("  fluid                 {:.3g} iterations of the pressure and {:.3g} ms a window",
        static_cast<double>(solver_iterations_) / static_cast<double>(windows_),

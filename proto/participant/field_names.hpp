@@ -23,8 +23,10 @@ inline constexpr auto particle_mass = "particle_mass";  ///< [kg]
 // From the fluid side. One row a face, or a cell.
 inline constexpr auto face_flux =
     "face_flux";  ///< Φ: superficial mass flux of the window [kg/s], out of the owner
-inline constexpr auto velocity = "velocity";  ///< u^{n+1}, interstitial [m/s], vector
-inline constexpr auto pressure = "pressure";  ///< p_d = p − ρ g·x [Pa]
+inline constexpr auto velocity =
+    "velocity";  ///< u on which drag acted: at the window's end, or its mean over inner steps;
+                 ///< interstitial [m/s], vector
+inline constexpr auto pressure = "pressure";                    ///< p_d = p − ρ g·x [Pa]
 inline constexpr auto pressure_gradient = "pressure_gradient";  ///< ∇p_d [Pa/m], vector
 inline constexpr auto impulse_taken =
     "impulse_taken";  ///< Δt (S − B u^{n+1}): impulse that drag gave the fluid [N s], vector

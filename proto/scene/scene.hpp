@@ -183,6 +183,7 @@ struct FluidNumerics {
   Convection convection = Convection::limited;
   TimeScheme time = TimeScheme::euler;
   double courant_limit = 5;  ///< [-] largest of any cell in an inner step
+  int outer_iterations = 1;
   int correctors = 2;
   int non_orthogonal_correctors = 1;  ///< in each corrector, on meshes that are not orthogonal
   double pressure_tolerance = 1e-6;   ///< relative residual of the pressure equation [-]

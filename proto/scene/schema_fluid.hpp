@@ -247,6 +247,12 @@ void describe(Visit& visit, FluidNumerics& numerics) {
          .meaning = "A window in which fluid would cross more cells than this is solved in equal "
                     "inner steps; fields of such a window are means over it."},
         numerics.courant_limit);
+  visit({.name = "outer_iterations",
+         .range = {.lower = 1, .upper = 100},
+         .meaning =
+             "Predictions of momentum in a step, each with the newest flux and followed by all "
+             "pressure corrections (PIMPLE); 1: the flux of the last step convects (PISO)."},
+        numerics.outer_iterations);
   visit({.name = "correctors",
          .range = {.lower = 1, .upper = 100},
          .meaning = "Pressure corrections in a step. Two keep the order of the pressure, three on "

@@ -136,6 +136,33 @@ TEST(InnerSteps, too_many_are_refused_with_the_window_that_would_do) {
   }
 }
 
+/// Largest change of the velocity from `outer` to `outer` + 1 outer iterations in one long step.
+double change_by_outer_iteration(int outer) {
+  FluidCase c = moving_cluster_case(true);
+  c.scene.fluid.numerics.pressure_tolerance = 1e-10;
+  c.scene.fluid.numerics.courant_limit = 50;
+  const Solids solids = cluster(c, 0, 0.5, 20);
+  const auto run = [&](int iterations) {
+    c.scene.fluid.numerics.outer_iterations = iterations;
+    VansSolver solver(c.scene, c.mesh);
+    solver.start(solids.voidage);
+    run_window(solver, solids, 1, 2e-2);
+    return solver.committed();
+  };
+  const FluidState one = run(outer);
+  const FluidState other = run(outer + 1);
+  double change = 0;
+  for (std::size_t cell = 0; cell < one.velocity.size(); ++cell)
+    change = std::max(change, (one.velocity[cell] - other.velocity[cell]).norm());
+  return change;
+}
+
+TEST(OuterIterations, converge_to_a_flux_that_convects_itself) {
+  const double first = change_by_outer_iteration(1);
+  EXPECT_GT(first, 1e-4);  // m/s; the flow is about 1 m/s
+  EXPECT_LT(change_by_outer_iteration(8), 0.1 * first);
+}
+
 TEST(SecondOrder, falls_back_where_a_front_crosses_half_a_cell) {
   FluidCase c = moving_cluster_case(true);
   c.scene.fluid.numerics.time = TimeScheme::bdf2;

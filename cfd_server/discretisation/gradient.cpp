@@ -8,13 +8,14 @@ namespace {
 
 /// From the cell's centre to where the other value stands.
 Vector3 reach(const Stencil& s, int side) {
-  return static_cast<double>(s.side_sign[side]) * s.delta[s.side_face[side]];
+  return static_cast<double>(s.side_sign[side]) * s.delta(s.side_face[side]);
 }
 
-template <class Coefficients>
-void vector_gradient(const Stencil& s, const Coefficients& coefficients,
-                     std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
-                     std::span<Matrix3> out) {
+/// add(jump, side, sum): sum += jump cᵀ
+template <class Add>
+void vector_gradient(const Stencil& s, std::span<const Vector3> field,
+                     std::span<const Vector3> boundary_jump, std::span<Matrix3> out,
+                     const Add& add) {
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     Matrix3 sum = Matrix3::Zero();
@@ -22,7 +23,7 @@ void vector_gradient(const Stencil& s, const Coefficients& coefficients,
       const int other = s.side_other[side];
       const Vector3 jump = other >= 0 ? Vector3(field[other] - field[cell])
                                       : boundary_jump[s.side_face[side] - s.internal_faces];
-      sum.noalias() += jump * coefficients[side].transpose();
+      add(jump, side, sum);
     }
     out[cell] = sum;
   }
@@ -87,12 +88,16 @@ std::vector<Vector3> gradient_coefficients(const Stencil& s,
 void gradient(const Stencil& s, std::span<const Vector3> coefficients,
               std::span<const Vector3> field, std::span<const Vector3> boundary_jump,
               std::span<Matrix3> out) {
-  vector_gradient(s, coefficients, field, boundary_jump, out);
+  vector_gradient(s, field, boundary_jump, out, [&](const Vector3& jump, int side, Matrix3& sum) {
+    sum.noalias() += jump * coefficients[side].transpose();
+  });
 }
 
 void gradient(const Stencil& s, const AxisVectors& coefficients, std::span<const Vector3> field,
               std::span<const Vector3> boundary_jump, std::span<Matrix3> out) {
-  vector_gradient(s, coefficients, field, boundary_jump, out);
+  vector_gradient(s, field, boundary_jump, out, [&](const Vector3& jump, int side, Matrix3& sum) {
+    coefficients.add_outer(jump, side, sum);
+  });
 }
 
 void gradient(const Stencil& s, std::span<const Vector3> coefficients,

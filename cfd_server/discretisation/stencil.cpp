@@ -12,10 +12,10 @@ namespace {
 
 void add_faces(const Mesh& mesh, Stencil& s) {
   double largest_cross = 0;
-  std::vector<Vector3> areas, deltas, from_owners, from_neighbours;
-  for (auto* vectors : {&areas, &s.cross, &deltas, &from_owners, &from_neighbours})
+  std::vector<Vector3> areas, from_owners, from_neighbours;
+  for (auto* vectors : {&areas, &s.cross, &from_owners, &from_neighbours})
     vectors->reserve(static_cast<std::size_t>(s.faces));
-  for (auto* values : {&s.area_size, &s.weight, &s.conductance})
+  for (auto* values : {&s.weight, &s.conductance})
     values->reserve(static_cast<std::size_t>(s.faces));
   for (int f = 0; f < s.faces; ++f) {
     const bool internal = f < s.internal_faces;
@@ -34,13 +34,11 @@ void add_faces(const Mesh& mesh, Stencil& s) {
     const double projected = std::max(delta.dot(area), 0.05 * delta.norm() * area.norm());
     const double conductance = area.squaredNorm() / projected;
     areas.push_back(area);
-    s.area_size.push_back(area.norm());
     const double within_owner = std::abs(from_owner.dot(area));
     const double within_neighbour = std::abs((from_owner - delta).dot(area));
     s.weight.push_back(internal ? within_owner / (within_owner + within_neighbour) : 1.0);
     s.conductance.push_back(conductance);
     s.cross.emplace_back(area - conductance * delta);
-    deltas.push_back(delta);
     from_owners.push_back(from_owner);
     if (internal) from_neighbours.emplace_back(from_owner - delta);
     largest_cross = std::max(largest_cross, s.cross.back().norm() / area.norm());
@@ -50,7 +48,6 @@ void add_faces(const Mesh& mesh, Stencil& s) {
   if (s.orthogonal) s.cross = {};
   const bool lattice = mesh.lattice.has_value();
   s.area = AxisVectors(std::move(areas), lattice);
-  s.delta = AxisVectors(std::move(deltas), lattice);
   s.from_owner = AxisVectors(std::move(from_owners), lattice);
   s.from_neighbour = AxisVectors(std::move(from_neighbours), lattice);
 }

@@ -4,6 +4,7 @@
 // writes it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,17 +22,15 @@ struct Stencil {
   int faces = 0;
   int internal_faces = 0;
   std::vector<int> owner;
-  std::vector<int> neighbour;     ///< internal faces
-  std::vector<double> volume;     ///< [m³]
-  std::vector<Vector3> centre;    ///< [m] of cells
-  AxisVectors area;               ///< [m²]
-  std::vector<double> area_size;  ///< [m²] |A|
+  std::vector<int> neighbour;   ///< internal faces
+  std::vector<double> volume;   ///< [m³]
+  std::vector<Vector3> centre;  ///< [m] of cells
+  AxisVectors area;             ///< [m²]
   std::vector<double>
       weight;  ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
   std::vector<double> conductance;  ///< g = |A|²/max(A·d, |A||d|/20) [m]
   std::vector<Vector3>
-      cross;          ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
-  AxisVectors delta;  ///< d [m]
+      cross;  ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal
   AxisVectors from_owner;      ///< x_f − x_P [m]
   AxisVectors from_neighbour;  ///< x_f − x_N [m], at N's side of a periodic pair; internal faces
 
@@ -56,6 +55,13 @@ struct Stencil {
   bool uniform = false;  ///< a lattice with equal cells
 
   int boundary_faces() const { return faces - internal_faces; }
+  /// |A| [m²] of a face.
+  double area_size(std::size_t face) const { return area[face].norm(); }
+  /// d [m] of a face.
+  Vector3 delta(int face) const {
+    return face < internal_faces ? Vector3(from_owner[face] - from_neighbour[face])
+                                 : from_owner[face];
+  }
 };
 
 /// Throws ConfigError naming the face if d·A is not positive inside the mesh.

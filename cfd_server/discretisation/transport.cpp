@@ -12,12 +12,6 @@ inline Vector3 limited_step(const Vector3& before, const Vector3& step) {
   return (product > 0).select(2 * product / (before + step).array(), 0.0).matrix();
 }
 
-inline Vector3 higher_order_part(Convection scheme, const Vector3& step, const Vector3& rise,
-                                 const Vector3& to_face, const Matrix3& gradient, double share) {
-  if (scheme == Convection::linear_upwind) return gradient * to_face;
-  return share * limited_step(2 * rise - step, step);
-}
-
 void add_lowest_order(const Stencil& s, const TransportCoefficients& c, const CellShare& share,
                       std::span<const Vector3> velocity, std::span<const Vector3> boundary_jump,
                       std::span<Vector3> force) {
@@ -41,11 +35,15 @@ void add_higher_order(const Stencil& s, const TransportCoefficients& c, const Ce
     const int upwind = out ? p : n;
     const Vector3 step =
         out ? Vector3(velocity[n] - velocity[p]) : Vector3(velocity[p] - velocity[n]);
-    const Vector3 along = out ? s.delta[f] : Vector3(-s.delta[f]);
-    const Vector3 to_face = out ? s.from_owner[f] : s.from_neighbour[f];
-    const double weight = out ? s.weight[f] : 1 - s.weight[f];
-    const Vector3 part = c.mass_flux[f] * higher_order_part(scheme, step, gradient[upwind] * along,
-                                                            to_face, gradient[upwind], weight);
+    // What the gradient says of the face, from the upwind centre and from the one beyond.
+    const Vector3 to_face = (out ? s.from_owner : s.from_neighbour).multiplied(gradient[upwind], f);
+    Vector3 part = c.mass_flux[f] * to_face;
+    if (scheme == Convection::limited) {
+      const Vector3 from_beyond =
+          (out ? s.from_neighbour : s.from_owner).multiplied(gradient[upwind], f);
+      const double weight = out ? s.weight[f] : 1 - s.weight[f];
+      part = c.mass_flux[f] * weight * limited_step(2 * (to_face - from_beyond) - step, step);
+    }
     if (share.has(p)) force[p] -= part;
     if (share.has(n)) force[n] += part;
   });
@@ -73,7 +71,8 @@ void add_transposed_stress(const Stencil& s, const TransportCoefficients& c, con
                            std::span<const Matrix3> gradient, std::span<Vector3> force) {
   const auto part = [&](int f, const Matrix3& at_face) -> Vector3 {
     const double viscous = c.diffusion[f] / s.conductance[f];  // μ ε_f; 0 where no value is given
-    return viscous * (at_face.transpose() * s.area[f] - (2.0 / 3.0 * at_face.trace()) * s.area[f]);
+    return viscous *
+           (s.area.multiplied_transposed(at_face, f) - (2.0 / 3.0 * at_face.trace()) * s.area[f]);
   };
   for_faces(share, 0, s.internal_faces, [&](int f) {
     const int p = s.owner[f];

@@ -20,7 +20,6 @@ MomentumSolver::MomentumSolver(const Stencil& stencil, std::vector<SlipFace> sli
       work_(static_cast<std::size_t>(stencil.cells), Vector3::Zero()) {
   const auto cells = static_cast<std::size_t>(stencil.cells);
   diagonal.assign(cells, 0.0);
-  weight.assign(stencil.side_face.size(), 0.0);
   residual.assign(cells, Vector3::Zero());
   change.assign(cells, Vector3::Zero());
 }
@@ -31,7 +30,9 @@ void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3
     Vector3 sum = diagonal[cell] * x[cell];
     for (int side = stencil_.side_offsets[cell]; side < stencil_.side_offsets[cell + 1]; ++side) {
       const int other = stencil_.side_other[side];
-      if (other >= 0) sum -= weight[side] * x[other];
+      if (other < 0) continue;
+      const int f = stencil_.side_face[side];
+      sum -= (stencil_.side_sign[side] > 0 ? into_owner[f] : into_neighbour[f]) * x[other];
     }
     y[cell] = sum;
   }

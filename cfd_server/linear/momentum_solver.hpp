@@ -9,6 +9,7 @@
 // two are level on 64,000. It knows no threads and cannot couple the components at slip walls.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "cfd_server/discretisation/stencil.hpp"
@@ -26,7 +27,7 @@ struct SlipFace {
   double weight = 0;    ///< [kg/s] of this step
 };
 
-/// diagonal_P x_P − Σ_sides weight x_other − Σ_slip weight (x − (x·n) n) = residual. The caller
+/// diagonal_P x_P − Σ_faces weight x_other − Σ_slip weight (x − (x·n) n) = residual. The caller
 /// fills the public arrays.
 class MomentumSolver {
  public:
@@ -38,8 +39,9 @@ class MomentumSolver {
   /// throws NumericsError if 1000 do not suffice.
   int solve(double scale_squared);
 
-  std::vector<double> diagonal;  ///< [kg/s] one a cell
-  std::vector<double> weight;    ///< [kg/s] one a side of a cell, 0 at the boundary
+  std::vector<double> diagonal;            ///< [kg/s] one a cell
+  std::span<const double> into_owner;      ///< [kg/s] one a face: weight of N in the row of P
+  std::span<const double> into_neighbour;  ///< [kg/s] one a face: weight of P in the row of N
   std::vector<SlipFace> slip;
   std::vector<Vector3> residual;  ///< [N] right-hand side; overwritten
   std::vector<Vector3> change;    ///< [m/s] solution

@@ -37,12 +37,12 @@ Residual residual_of(const Stencil& s, const PressureMatrix& matrix, std::span<c
   return {std::sqrt(squares.residual), std::sqrt(squares.scale)};
 }
 
-std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice,
-                                                     [[maybe_unused]] const Mesh& mesh,
-                                                     const Stencil& stencil) {
+std::unique_ptr<PressureSolver> make_pressure_solver(
+    LinearSolverChoice choice, [[maybe_unused]] const std::optional<Lattice>& lattice,
+    const Stencil& stencil) {
 #ifdef FLUXPACT_HAS_HYPRE
   if (choice != LinearSolverChoice::conjugate_gradient) {
-    if (mesh.lattice) return make_lattice_multigrid(*mesh.lattice, stencil);
+    if (lattice) return make_lattice_multigrid(*lattice, stencil);
     return make_algebraic_multigrid(stencil);
   }
 #else

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,7 +60,9 @@ class PressureSolver {
 /// hypre's PFMG-preconditioned conjugate gradients on lattices, BoomerAMG on other meshes, Eigen's
 /// conjugate gradients with an incomplete Cholesky factor without hypre. Asking for multigrid in a
 /// build without hypre is a ConfigError.
-std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice, const Mesh& mesh,
+/// lattice: that of the mesh.
+std::unique_ptr<PressureSolver> make_pressure_solver(LinearSolverChoice choice,
+                                                     const std::optional<Lattice>& lattice,
                                                      const Stencil& stencil);
 
 /// Solve and check the true residual. Returns the iterations, 0 if x is good enough already; throws

@@ -97,7 +97,7 @@ void FluidScalars::Scalar::set_boundary(const Stencil& s, double time) {
       const Vector3 at = s.centre[s.owner[f]] + s.from_owner[f];
       const double value = finite(patch.formula(at, time), name, "boundaries", at, time);
       const bool given_per_area = boundary.kind[b] == ScalarFace::influx;
-      boundary.value[b] = given_per_area ? value * s.area_size[f] / factor : value;
+      boundary.value[b] = given_per_area ? value * s.area_size(f) / factor : value;
     }
   }
 }

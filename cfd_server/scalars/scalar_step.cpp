@@ -190,7 +190,7 @@ void deferred_flux(const Stencil& s, Convection scheme, std::span<const double> 
     }
     // Harmonic mean of the slopes before and after, zero at an extremum: van Leer's limiter.
     const double after = out ? value[n] - value[p] : value[p] - value[n];
-    const double rise = gradient[upwind].dot(s.delta[f]) * (out ? 1 : -1);
+    const double rise = gradient[upwind].dot(s.delta(f)) * (out ? 1 : -1);
     const double before = 2 * rise - after;
     const double share = out ? s.weight[f] : 1 - s.weight[f];
     if (before * after > 0) flux[f] = mass_flux[f] * share * 2 * before * after / (before + after);

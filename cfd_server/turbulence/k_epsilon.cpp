@@ -37,7 +37,7 @@ KEpsilon::KEpsilon(const Scene& scene, const Mesh& mesh, const Stencil& s)
         energy_boundary_.kind[b] = ScalarFace::backflow;
         dissipation_boundary_.kind[b] = ScalarFace::backflow;
       } else if (fluid.type == BoundaryType::wall && fluid.slip == Slip::none) {
-        const double distance = s.from_owner[f].dot(s.area[f]) / s.area_size[f];
+        const double distance = s.from_owner[f].dot(s.area[f]) / s.area_size(f);
         walls_.push_back({b, s.owner[f], distance, 1.0});
         ++wall_faces[s.owner[f]];
       }

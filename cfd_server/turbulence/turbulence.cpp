@@ -71,7 +71,7 @@ void Turbulence::advance(const FluidStep& step, std::span<const Vector3> velocit
     const std::vector<WallFace>& walls = k_epsilon_->walls();
     for (std::size_t i = 0; i < walls.size(); ++i) {
       const int f = stencil_.internal_faces + walls[i].face;
-      const Vector3 normal = stencil_.area[f] / stencil_.area_size[f];
+      const Vector3 normal = stencil_.area[f] / stencil_.area_size(f);
       const Vector3& jump = jump_[walls[i].face];
       wall_speed_[i] = (jump - jump.dot(normal) * normal).norm();
     }

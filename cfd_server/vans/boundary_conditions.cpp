@@ -41,7 +41,7 @@ void check_entry(const std::string& name, const BoundarySettings& entry) {
 }
 
 /// Length of the path from the cell's centre to the wall, along its normal [m].
-double depth(const Stencil& s, int face) { return s.area_size[face] / s.conductance[face]; }
+double depth(const Stencil& s, int face) { return s.area_size(face) / s.conductance[face]; }
 
 PatchCondition make_condition(const BoundarySettings& entry, const Mesh& mesh, const Patch& patch) {
   const VectorFormula velocity = entry.superficial    ? *entry.superficial
@@ -107,7 +107,7 @@ void evaluate(const Stencil& s, const BoundaryConditions& conditions, const Patc
   const double pace = patch.factor.pace(time);
   for (int b = patch.first; b < patch.first + patch.size; ++b) {
     const Vector3& x = conditions.centre[b];
-    const Vector3 normal = s.area[b + s.internal_faces] / s.area_size[b + s.internal_faces];
+    const Vector3 normal = s.area[b + s.internal_faces] / s.area_size(b + s.internal_faces);
     switch (patch.type) {
       case BoundaryType::velocity:
         given[b] = pace * patch.factor.shape(x) * patch.velocity(x, time);
@@ -156,7 +156,7 @@ BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh, const S
     add_kinds(entry, s, condition, conditions);
     if (condition.type != BoundaryType::pressure) continue;
     for (int b = condition.first; b < condition.first + condition.size; ++b) {
-      const double size = s.area_size[b + s.internal_faces];
+      const double size = s.area_size(b + s.internal_faces);
       conditions.level += size * boundary_pressure(conditions, condition, b, 0);
       weight += size;
     }
@@ -199,7 +199,7 @@ void boundary_jump(const Stencil& s, const BoundaryConditions& conditions,
         jump[b] = prescribed[b] - own;
         break;
       case FaceKind::slip: {
-        const Vector3 normal = s.area[f] / s.area_size[f];
+        const Vector3 normal = s.area[f] / s.area_size(f);
         const Vector3 difference = prescribed[b] - own;
         const double across = difference.dot(normal);
         jump[b] = across * normal + conditions.grip[b] * (difference - across * normal);

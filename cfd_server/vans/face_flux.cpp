@@ -63,19 +63,20 @@ void explicit_flux(const Stencil& s, const BoundaryConditions& conditions,
     const int p = s.owner[f];
     const double w = s.weight[f];
     Vector3 force = w * in.specific_force[p];
-    Vector3 value = in.superficial[p] + in.superficial_gradient[p] * s.from_owner[f];
+    Vector3 value = in.superficial[p] + s.from_owner.multiplied(in.superficial_gradient[p], f);
     Vector3 slope = Vector3::Zero();
     if (!s.orthogonal)
       slope = internal ? Vector3((1 - w) * in.pressure_gradient[p]) : in.pressure_gradient[p];
     if (internal) {
       const int n = s.neighbour[f];
       force += (1 - w) * in.specific_force[n];
-      value = 0.5 * (value + in.superficial[n] + in.superficial_gradient[n] * s.from_neighbour[f]);
+      value = 0.5 * (value + in.superficial[n] +
+                     s.from_neighbour.multiplied(in.superficial_gradient[n], f));
       if (!s.orthogonal) slope += w * in.pressure_gradient[n];
     }
     const double rebuilt = rebuilt_share(s, f);
-    const double face_value = rebuilt * value.dot(s.area[f]) + (1 - rebuilt) * in.last_flux[f];
-    double driving = force.dot(s.area[f]) + c.memory[f] + c.transport_resistance[f] * face_value;
+    const double face_value = rebuilt * s.area.dot(value, f) + (1 - rebuilt) * in.last_flux[f];
+    double driving = s.area.dot(force, f) + c.memory[f] + c.transport_resistance[f] * face_value;
     if (!s.orthogonal) driving -= s.cross[f].dot(slope);
     flux[f] = c.mobility[f] * driving;
   }
@@ -91,19 +92,21 @@ void add_pressure_flux(const Stencil& s, const BoundaryValues& values, const Fac
   }
 }
 
-void predict_flux(const Stencil& s, std::span<const double> old_flux,
-                  std::span<const Vector3> superficial, std::span<const Vector3> old_superficial,
-                  std::span<double> flux) {
+void predict_flux(const Stencil& s, const FluidState& old_state, double density,
+                  std::span<const Vector3> superficial, std::span<double> flux) {
+  const auto change_of = [&](int cell) -> Vector3 {
+    return superficial[cell] - old_state.voidage[cell] * old_state.velocity[cell];
+  };
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int f = 0; f < s.faces; ++f) {
     const int p = s.owner[f];
     const double w = s.weight[f];
-    Vector3 change = superficial[p] - old_superficial[p];
+    Vector3 change = change_of(p);
     if (f < s.internal_faces) {
       const int n = s.neighbour[f];
-      change = (1 - w) * change + w * (superficial[n] - old_superficial[n]);
+      change = (1 - w) * change + w * change_of(n);
     }
-    flux[f] = old_flux[f] + change.dot(s.area[f]);
+    flux[f] = old_state.face_flux[f] / density + change.dot(s.area[f]);
   }
 }
 

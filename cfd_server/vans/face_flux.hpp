@@ -65,8 +65,7 @@ void add_pressure_flux(const Stencil& stencil, const BoundaryValues& values,
                        std::span<double> flux);
 
 /// The face's first guess in a window: φ^n plus the change of ε u in its two cells [m³/s].
-void predict_flux(const Stencil& stencil, std::span<const double> old_flux,
-                  std::span<const Vector3> superficial, std::span<const Vector3> old_superficial,
-                  std::span<double> flux);
+void predict_flux(const Stencil& stencil, const FluidState& old_state, double density,
+                  std::span<const Vector3> superficial, std::span<double> flux);
 
 }  // namespace fluxpact

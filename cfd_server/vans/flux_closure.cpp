@@ -12,10 +12,10 @@ ClosureTree make_closure_tree(const Stencil& s, const BoundaryConditions& condit
   tree.order.reserve(cells);
   tree.parent_face.assign(cells, -1);
   tree.parent_cell.assign(cells, -1);
-  tree.sign.assign(cells, 0.0);
+  tree.sign.assign(cells, 0);
   tree.carry.assign(cells, 0.0L);
   std::vector<bool> reached(cells, false);
-  const auto reach = [&](int cell, int face, int parent, double sign) {
+  const auto reach = [&](int cell, int face, int parent, std::int8_t sign) {
     if (reached[cell]) return;
     reached[cell] = true;
     tree.order.push_back(cell);
@@ -24,17 +24,18 @@ ClosureTree make_closure_tree(const Stencil& s, const BoundaryConditions& condit
     tree.sign[cell] = sign;
   };
   for (int f = s.internal_faces; f < s.faces; ++f) {
-    if (conditions.kind[f - s.internal_faces] == FaceKind::pressure) reach(s.owner[f], f, -1, 1.0);
+    if (conditions.kind[f - s.internal_faces] == FaceKind::pressure) reach(s.owner[f], f, -1, 1);
   }
   for (const FluidRegion& region : regions.list) {
-    if (!region.open) reach(region.first_cell, -1, -1, 0.0);
+    if (!region.open) reach(region.first_cell, -1, -1, 0);
   }
   std::size_t next = 0;
   while (next < tree.order.size()) {  // `order` grows meanwhile
     const int cell = tree.order[next++];
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
-      if (other >= 0) reach(other, s.side_face[side], cell, -s.side_sign[side]);
+      if (other >= 0)
+        reach(other, s.side_face[side], cell, static_cast<std::int8_t>(-s.side_sign[side]));
     }
   }
   return tree;

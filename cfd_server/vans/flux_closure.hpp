@@ -5,6 +5,7 @@
 // that was.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,8 +19,8 @@ struct ClosureTree {
   std::vector<int> order;  ///< cells, parents before children
   std::vector<int>
       parent_face;  ///< one a cell: the face towards the root; −1 at the root of a closed region
-  std::vector<int> parent_cell;  ///< one a cell: the cell across that face, −1 outside
-  std::vector<double> sign;      ///< one a cell: +1 if it owns parent_face
+  std::vector<int> parent_cell;   ///< one a cell: the cell across that face, −1 outside
+  std::vector<std::int8_t> sign;  ///< one a cell: +1 if it owns parent_face
   std::vector<long double>
       carry;  ///< workspace: rounding passed on, so that it does not add up globally
 };

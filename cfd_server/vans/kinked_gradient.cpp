@@ -20,7 +20,7 @@ void kinked_gradient_coefficients(const Stencil& s, const MomentumCoefficients& 
     Matrix3 normal = Matrix3::Zero();
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
-      const Vector3 d = s.side_sign[side] * s.delta[s.side_face[side]];
+      const Vector3 d = s.side_sign[side] * s.delta(s.side_face[side]);
       const double trust = other >= 0 ? std::min(1.0, own / resistance(other)) : 1.0;
       coefficients[side] = trust / d.squaredNorm() * d;
       normal += coefficients[side] * d.transpose();
@@ -52,18 +52,18 @@ void kinked_gradient(const Stencil& s, const BoundaryConditions& conditions,
       const int f = s.side_face[side];
       const int other = s.side_other[side];
       const double sign = s.side_sign[side];
-      const double normal_path = s.area_size[f] / s.conductance[f];  // d_n
+      const double normal_path = s.area_size(f) / s.conductance[f];  // d_n
       double rise = 0;
       if (other >= 0) {
         const double beyond = sign > 0 ? 1 - s.weight[f] : s.weight[f];
         rise = in.pressure[other] - in.pressure[cell] +
-               beyond * normal_path * sign * (local(cell, f) - local(other, f)) / s.area_size[f];
+               beyond * normal_path * sign * (local(cell, f) - local(other, f)) / s.area_size(f);
       } else if (conditions.kind[f - s.internal_faces] == FaceKind::pressure) {
         rise = values.pressure[f - s.internal_faces] - in.pressure[cell];
       } else {
-        const Vector3 normal = s.area[f] / s.area_size[f];
-        const Vector3 along = s.delta[f] - normal_path * normal;
-        rise = normal_path * local(cell, f) / s.area_size[f] + along.dot(gradient[cell]);
+        const Vector3 normal = s.area[f] / s.area_size(f);
+        const Vector3 along = s.delta(f) - normal_path * normal;
+        rise = normal_path * local(cell, f) / s.area_size(f) + along.dot(gradient[cell]);
       }
       sum += rise * coefficients[side];
     }

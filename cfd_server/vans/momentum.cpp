@@ -53,8 +53,8 @@ double weight_of_side(const Stencil& s, const TransportCoefficients& faces, int 
 void resize(MomentumCoefficients& c, const Stencil& s) {
   const auto cells = static_cast<std::size_t>(s.cells);
   const auto faces = static_cast<std::size_t>(s.faces);
-  for (auto* values : {&c.inertia, &c.drag, &c.transport}) values->assign(cells, 0.0);
-  for (auto* values : {&c.known, &c.source}) values->assign(cells, Vector3::Zero());
+  for (auto* values : {&c.inertia, &c.transport}) values->assign(cells, 0.0);
+  c.known.assign(cells, Vector3::Zero());
   for (auto* values :
        {&c.faces.mass_flux, &c.faces.diffusion, &c.faces.into_owner, &c.faces.into_neighbour}) {
     values->assign(faces, 0.0);
@@ -67,6 +67,8 @@ void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
                        std::span<const double> convecting, const ViscosityFields& viscosity,
                        MomentumCoefficients& c) {
   assemble_faces(s, conditions, fluid, convecting, solids.voidage, viscosity, c.faces);
+  c.drag = solids.drag_coefficient;
+  c.source = solids.drag_source;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     double transport = 0;
@@ -81,8 +83,6 @@ void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
       c.inertia[cell] -= before;
       carried -= before * old_state.before.velocity[cell];
     }
-    c.drag[cell] = solids.drag_coefficient[cell];
-    c.source[cell] = solids.drag_source[cell];
     c.known[cell] = carried + c.source[cell];
   }
 }
@@ -101,10 +101,8 @@ int predict_velocity(const Stencil& s, const MomentumCoefficients& c,
     return c.known[cell].squaredNorm() + force[cell].squaredNorm() + resisted.squaredNorm() +
            pressure_force.squaredNorm();
   });
-  const int sides = s.side_offsets.back();
-#pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int side = 0; side < sides; ++side)
-    solver.weight[side] = s.side_other[side] < 0 ? 0.0 : weight_of_side(s, c.faces, side);
+  solver.into_owner = c.faces.into_owner;
+  solver.into_neighbour = c.faces.into_neighbour;
   for (SlipFace& face : solver.slip) face.weight = face.slipping * c.faces.into_owner[face.face];
   const int iterations = solver.solve(scale);
 #pragma omp parallel for schedule(static) num_threads(s.threads)

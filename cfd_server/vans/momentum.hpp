@@ -36,18 +36,18 @@ struct ViscosityFields {
 
 /// Coefficients of one window. One entry a cell unless stated.
 struct MomentumCoefficients {
-  std::vector<double> inertia;    ///< A_t [kg/s]
-  std::vector<double> drag;       ///< A_b [kg/s]
-  std::vector<double> transport;  ///< A_c [kg/s]: sum of the neighbours' weights
-  std::vector<Vector3> known;     ///< B_t + S [N]
-  std::vector<Vector3> source;    ///< S [N]
-  TransportCoefficients faces;    ///< one entry a face
+  std::vector<double> inertia;      ///< A_t [kg/s]
+  std::span<const double> drag;     ///< A_b [kg/s], of the solids
+  std::vector<double> transport;    ///< A_c [kg/s]: sum of the neighbours' weights
+  std::vector<Vector3> known;       ///< B_t + S [N]
+  std::span<const Vector3> source;  ///< S [N], of the solids
+  TransportCoefficients faces;      ///< one entry a face
 };
 
 void resize(MomentumCoefficients& coefficients, const Stencil& stencil);
 
-/// Fill the coefficients from the last state and the solids at the step's end. convecting: Φ
-/// [kg/s], one a face.
+/// Fill the coefficients from the last state and the solids at the step's end, whose drag they go
+/// on to read. convecting: Φ [kg/s], one a face.
 void assemble_momentum(const Stencil& stencil, const BoundaryConditions& conditions,
                        const FluidProperties& fluid, const FluidState& old_state,
                        const SolidsInput& solids, const TimeCoefficients& time,

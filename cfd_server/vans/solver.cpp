@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <optional>
 
 #include "cfd_server/scalars/fluid_scalars.hpp"
 #include "cfd_server/turbulence/turbulence.hpp"
@@ -45,12 +46,12 @@ void balance_outlets(const FluidProblem& problem, std::vector<double>& flux) {
     const int region = problem.regions.of_cell[s.owner[f]];
     surplus[region] += flux[f];
     if (problem.conditions.kind[f - s.internal_faces] == FaceKind::pressure)
-      outlet_area[region] += s.area_size[f];
+      outlet_area[region] += s.area_size(f);
   }
   for (int f = s.internal_faces; f < s.faces; ++f) {
     if (problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure) continue;
     const int region = problem.regions.of_cell[s.owner[f]];
-    flux[f] -= surplus[region] * s.area_size[f] / outlet_area[region];
+    flux[f] -= surplus[region] * s.area_size(f) / outlet_area[region];
   }
 }
 
@@ -71,12 +72,7 @@ void check_settings(const Scene& scene) {
 
 struct VansSolver::Impl {
   Impl(const Scene& scene, const Mesh& mesh)
-      : problem(make_problem(scene, mesh)),
-        fields(problem, mesh),
-        initial_superficial(scene.fluid.initial.superficial),
-        voidage(problem.stencil.volume.size()) {
-    resize(committed, problem.stencil);
-    resize(candidate, problem.stencil);
+      : problem(make_problem(scene, mesh)), initial_superficial(scene.fluid.initial.superficial) {
     if (!scene.fluid.scalars.empty())
       scalars = std::make_unique<FluidScalars>(scene, mesh, problem.stencil);
     if (scene.fluid.turbulence.model != TurbulenceModel::none) {
@@ -93,9 +89,9 @@ struct VansSolver::Impl {
   void finish_window(const Window& window, int inner_steps);
 
   FluidProblem problem;
-  WindowFields fields;
+  std::optional<WindowFields> fields;  ///< from `start` on, when the caller may have freed the mesh
   VectorValue initial_superficial;
-  std::vector<double> voidage;             ///< at the end of an inner step
+  std::vector<double> voidage;             ///< at the end of an inner step; sized when first needed
   FluidState between;                      ///< of inner steps; sized when a window first needs them
   WindowMeans means;                       ///< of the window in hand; sized with it
   std::unique_ptr<FluidScalars> scalars;   ///< nothing if the scene has none
@@ -131,28 +127,26 @@ void VansSolver::Impl::warn_once() {
 void VansSolver::Impl::advance_step(const FluidState& from, const Window& window,
                                     const SolidsInput& solids, const Progress& progress,
                                     FluidState& to) {
-  const Step step{problem, from, window, solids};
+  const Step step{problem, from, window, solids, to};
   const TimeCoefficients time = choose_time_scheme(problem, from, solids.voidage, window.length);
-  if (turbulence) fields.viscosity = turbulence->prepare(from.velocity, fields.boundary);
-  open_step(step, time, fields, report);
-  pre_correct(step, fields, report);
+  if (turbulence) fields->viscosity = turbulence->prepare(from.velocity, fields->boundary);
+  open_step(step, time, *fields, report);
+  pre_correct(step, *fields, report);
   if (progress) progress();
   for (int outer = 1; outer <= problem.numerics.outer_iterations; ++outer) {
-    if (outer > 1) renew_convection(step, fields, report);
-    predict(step, fields, report);
+    if (outer > 1) renew_convection(step, *fields, report);
+    predict(step, *fields, report);
     for (int corrector = 1; corrector <= problem.numerics.correctors; ++corrector) {
       const bool last =
           outer == problem.numerics.outer_iterations && corrector == problem.numerics.correctors;
-      correct(step, last, fields, report);
+      correct(step, last, *fields, report);
       if (progress) progress();
     }
   }
   std::ranges::copy(solids.voidage, to.voidage.begin());
-  std::ranges::copy(fields.mass_flux, to.face_flux.begin());
-  std::ranges::copy(fields.velocity, to.velocity.begin());
-  std::ranges::copy(fields.closing_gradient, to.pressure_gradient.begin());
+  std::ranges::copy(fields->velocity, to.velocity.begin());
   for (int cell = 0; cell < problem.stencil.cells; ++cell)
-    to.pressure[cell] = fields.pressure[cell] + problem.conditions.level;
+    to.pressure[cell] = fields->pressure[cell] + problem.conditions.level;
   to.step = window.length;
   if (problem.numerics.time == TimeScheme::bdf2) keep_level(from, time, to);
   ++report.inner_steps;
@@ -164,13 +158,17 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
 /// have met.
 void VansSolver::Impl::refuse(const Window& window, int count, const SolidsInput& solids,
                               const NumericsError& error) const {
+  // Errors from within say who speaks, and some which step: once is enough.
+  std::string_view what = error.what();
+  if (what.starts_with("fluid")) what.remove_prefix(std::min(what.find(": ") + 2, what.size()));
   std::string text = fmt::format("fluid, step {} (coupling.window {:.3g} s in {} inner steps): {}",
-                                 window.step, window.length, count, error.what());
+                                 window.step, window.length, count, what);
   const double stiffness = stiffness_number(problem, solids, window.length / count);
   if (stiffness > notable_stiffness) {
     text += fmt::format(
         "; cells with fewer than six faces (tetrahedra, prisms, pyramids) bear drag and viscous "
-        "stress of some 1000 times the inertia of a step, here it is {:.3g} times; use hexahedra "
+        "stress of some 1000 times the inertia of a step (less in thin layers), here it is {:.3g} "
+        "times; use hexahedra "
         "or polyhedra there, or a coupling.window of {:.2g} s",
         stiffness, std::min(window.length, window.length / count * 1000 / stiffness));
   }
@@ -187,7 +185,7 @@ void VansSolver::Impl::carry(const FluidState& from, const FluidState& to, const
                        to.voidage,
                        passed,
                        problem.continuity == Continuity::conservative};
-  if (turbulence) turbulence->advance(done, to.velocity, fields.boundary);
+  if (turbulence) turbulence->advance(done, to.velocity, fields->boundary);
   if (!scalars) return;
   scalars->advance(done, step.end(),
                    turbulence ? turbulence->eddy_viscosity() : std::span<const double>{});
@@ -195,22 +193,28 @@ void VansSolver::Impl::carry(const FluidState& from, const FluidState& to, const
 
 /// The window's mean flux balances what the voidage changed by, to the last digit.
 void VansSolver::Impl::finish_window(const Window& window, int inner_steps) {
-  if (inner_steps == 1) candidate.means = {};
+  WindowMeans& of_window = candidate.means;
+  if (inner_steps == 1) {
+    // No new memory where windows with one step follow each other.
+    of_window.face_flux.clear();
+    of_window.velocity.clear();
+    of_window.pressure_gradient.clear();
+  }
   if (inner_steps == 1 && problem.numerics.time == TimeScheme::euler) return;
-  if (inner_steps == 1) candidate.means.face_flux = candidate.before.passed;
+  if (inner_steps == 1) of_window.face_flux = candidate.before.passed;
   if (problem.continuity == Continuity::legacy) return;
   const Stencil& s = problem.stencil;
   for (int cell = 0; cell < s.cells; ++cell) {
-    fields.storage[cell] = problem.fluid.density * s.volume[cell] *
-                           (candidate.voidage[cell] - committed.voidage[cell]) / window.length;
+    fields->storage[cell] = problem.fluid.density * s.volume[cell] *
+                            (candidate.voidage[cell] - committed.voidage[cell]) / window.length;
   }
   for (int b = 0; b < s.boundary_faces(); ++b) {
-    fields.boundary.flux[b] =
+    fields->boundary.flux[b] =
         candidate.means.face_flux[b + s.internal_faces] / problem.fluid.density;
   }
-  settle_closed_regions(s, problem.regions, fields.boundary.flux, problem.fluid.density,
-                        window.length, window.step, fields.storage);
-  close_fluxes(fields.tree, s, fields.storage, candidate.means.face_flux);
+  settle_closed_regions(s, problem.regions, fields->boundary.flux, problem.fluid.density,
+                        window.length, window.step, fields->storage);
+  close_fluxes(fields->tree, s, fields->storage, candidate.means.face_flux);
 }
 
 VansSolver::VansSolver(const Scene& scene, const Mesh& mesh) {
@@ -224,7 +228,12 @@ void VansSolver::start(std::span<const double> voidage) {
   Impl& self = *impl_;
   const Stencil& s = self.problem.stencil;
   check_voidage(s, voidage, 0);
-  update_boundary_values(s, self.problem.conditions, voidage, 0, self.fields.boundary);
+  if (!self.fields) {
+    self.fields.emplace(self.problem);
+    resize(self.committed, s);
+    resize(self.candidate, s);
+  }
+  update_boundary_values(s, self.problem.conditions, voidage, 0, self.fields->boundary);
   FluidState& state = self.committed;
   state.voidage.assign(voidage.begin(), voidage.end());
   std::vector<double> flux(static_cast<std::size_t>(s.faces));
@@ -232,7 +241,7 @@ void VansSolver::start(std::span<const double> voidage) {
     const bool given = f >= s.internal_faces &&
                        self.problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure;
     const Vector3 at = s.centre[s.owner[f]] + s.from_owner[f];
-    flux[f] = given ? self.fields.boundary.flux[f - s.internal_faces]
+    flux[f] = given ? self.fields->boundary.flux[f - s.internal_faces]
                     : initial_value(self.initial_superficial, at).dot(s.area[f]);
   }
   balance_outlets(self.problem, flux);
@@ -248,7 +257,7 @@ void VansSolver::start(std::span<const double> voidage) {
   if (self.scalars) self.scalars->start();
   if (self.turbulence) self.turbulence->start();
   self.has_candidate = false;
-  self.fields.pressure_solver->forget();
+  self.fields->pressure_solver->forget();
 }
 
 void VansSolver::advance(const Window& window, const SolidsInput& solids,
@@ -256,15 +265,22 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   Impl& self = *impl_;
   const FluidProblem& problem = self.problem;
   self.has_candidate = false;
+  if (!self.fields) {
+    throw NumericsError("fluid, step {}: there is no state to go on from; start must come first",
+                        window.step);
+  }
   check_window(problem.stencil, window, solids);
   self.report = {};
-  self.fields.pressure_solver->begin_window();
+  self.fields->pressure_solver->begin_window();
   update_boundary_values(problem.stencil, problem.conditions, solids.voidage, window.end(),
-                         self.fields.boundary);
+                         self.fields->boundary);
   const double courant =
-      courant_number(problem, self.committed, self.fields.boundary, solids.voidage, window.length);
+      courant_number(problem, self.committed, self.fields->boundary, solids.voidage, window.length);
   const int count = count_inner_steps(courant, problem.numerics.courant_limit, window);
-  if (count > 1 && self.between.voidage.empty()) resize(self.between, problem.stencil);
+  if (count > 1 && self.between.voidage.empty()) {
+    resize(self.between, problem.stencil);
+    self.voidage.resize(problem.stencil.volume.size());
+  }
   if (self.scalars) self.scalars->open_window();
   if (self.turbulence) self.turbulence->open_window();
   const FluidState* from = &self.committed;
@@ -300,12 +316,14 @@ void VansSolver::commit() {
   std::swap(impl_->committed, impl_->candidate);
   if (impl_->scalars) impl_->scalars->commit();
   if (impl_->turbulence) impl_->turbulence->commit();
-  impl_->fields.pressure_solver->commit();
+  impl_->fields->pressure_solver->commit();
   impl_->has_candidate = false;
 }
 
 void VansSolver::rollback() { impl_->has_candidate = false; }
-void VansSolver::forget_setup() { impl_->fields.pressure_solver->forget(); }
+void VansSolver::forget_setup() {
+  if (impl_->fields) impl_->fields->pressure_solver->forget();
+}
 
 std::span<const double> window_flux(const FluidState& state) {
   return state.means.face_flux.empty() ? state.face_flux : state.means.face_flux;

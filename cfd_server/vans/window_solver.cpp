@@ -16,7 +16,7 @@ std::vector<SlipFace> slip_faces(const Stencil& s, const BoundaryConditions& con
   std::vector<SlipFace> faces;
   for (int f = s.internal_faces; f < s.faces; ++f) {
     if (conditions.kind[f - s.internal_faces] != FaceKind::slip) continue;
-    faces.push_back({f, s.owner[f], s.area[f] / s.area_size[f],
+    faces.push_back({f, s.owner[f], s.area[f] / s.area_size(f),
                      1 - conditions.grip[f - s.internal_faces], 0.0});
   }
   return faces;
@@ -47,17 +47,16 @@ void evaluate_cells(const Step& step, WindowFields& w) {
   gradient(s, problem.gradient, w.superficial, w.jump, w.superficial_gradient);
 }
 
-/// Pressure for the source in hand, and the flux that it drives.
+/// Pressure for the source in hand; to the explicit part in `flux` comes what it drives.
 void solve_continuity(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   LapClock clock;
-  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.explicit_part, w.rhs);
+  assemble_pressure_rhs(s, w.boundary, w.faces, w.face_scale, w.source, w.flux, w.rhs);
   report.seconds.assembly += clock.lap();
   report.iterations += solve_pressure(*w.pressure_solver, s, w.matrix, w.rhs, w.pressure,
                                       problem.numerics.pressure_tolerance);
   report.seconds.pressure += clock.lap();
-  std::ranges::copy(w.explicit_part, w.flux.begin());
   add_pressure_flux(s, w.boundary, w.faces, w.pressure, w.flux);
   if (!s.orthogonal) {
     kinked_gradient(
@@ -67,25 +66,26 @@ void solve_continuity(const Step& step, WindowFields& w, FluidReport& report) {
   report.seconds.assembly += clock.lap();
 }
 
+/// The explicit part, which may take the place of the last flux.
 void evaluate_explicit_flux(const FluidProblem& problem, std::span<const double> last_flux,
-                            WindowFields& w, FluidReport& report) {
+                            WindowFields& w, std::span<double> explicit_part, FluidReport& report) {
   LapClock clock;
   explicit_flux(
       problem.stencil, problem.conditions, w.boundary, w.faces,
       {w.specific_force, w.superficial, w.superficial_gradient, last_flux, w.pressure_slope},
-      w.explicit_part);
+      explicit_part);
   report.seconds.assembly += clock.lap();
 }
 
 /// Pressure and fluxes; on a non-orthogonal mesh again with the slope of the pressure just found.
 void solve_fluxes(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
-  evaluate_explicit_flux(problem, w.flux, w, report);
+  if (!problem.stencil.orthogonal) std::ranges::copy(w.flux, w.flux_before.begin());
+  evaluate_explicit_flux(problem, w.flux, w, w.flux, report);
   if (problem.stencil.orthogonal) return solve_continuity(step, w, report);
-  std::ranges::copy(w.flux, w.flux_before.begin());
   solve_continuity(step, w, report);
   for (int again = 0; again < problem.numerics.non_orthogonal_correctors; ++again) {
-    evaluate_explicit_flux(problem, w.flux_before, w, report);
+    evaluate_explicit_flux(problem, w.flux_before, w, w.flux, report);
     solve_continuity(step, w, report);
   }
 }
@@ -111,6 +111,7 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
     legacy_source(s, step.old_state.voidage, step.solids.voidage, w.voidage_gradient,
                   w.interstitial, step.window.length, w.source);
     std::ranges::copy(w.flux, w.flux_before.begin());
+    std::ranges::copy(w.explicit_part, w.flux.begin());
     solve_continuity(step, w, report);
     ++report.legacy_iterations;
     change = 0;
@@ -123,19 +124,20 @@ void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& rep
 
 /// Fluxes in kg/s, with the continuity of every cell exact to round-off.
 void close(const Step& step, WindowFields& w, FluidReport& report) {
+  const std::span<double> mass_flux = step.new_state.face_flux;
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int f = 0; f < s.faces; ++f) w.mass_flux[f] = problem.fluid.density * w.flux[f];
+  for (int f = 0; f < s.faces; ++f) mass_flux[f] = problem.fluid.density * w.flux[f];
   if (problem.continuity == Continuity::legacy) return;
-  const double correction = close_fluxes(w.tree, problem.stencil, w.storage, w.mass_flux);
+  const double correction = close_fluxes(w.tree, problem.stencil, w.storage, mass_flux);
   // In a fluid at rest all fluxes are rounding, and so is their correction: no error of the solver.
   const double rounding = 1e-13 * problem.fluid.density *
                           largest(problem.stencil, problem.stencil.volume) / step.window.length;
   report.closure_correction =
-      correction > rounding ? correction / largest(problem.stencil, w.mass_flux) : 0.0;
+      correction > rounding ? correction / largest(problem.stencil, mass_flux) : 0.0;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int f = 0; f < s.faces; ++f) w.flux[f] = w.mass_flux[f] / problem.fluid.density;
+  for (int f = 0; f < s.faces; ++f) w.flux[f] = mass_flux[f] / problem.fluid.density;
 }
 
 /// The coefficients of momentum, faces and pressure for this convecting flux [kg/s].
@@ -163,6 +165,7 @@ void assemble(const Step& step, std::span<const double> convecting, WindowFields
 
 FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   FluidProblem problem;
+  problem.lattice = mesh.lattice;
   problem.stencil = make_stencil(mesh, threads_for(scene.fluid.numerics.threads, mesh.cells()));
   problem.conditions = read_boundaries(scene, mesh, problem.stencil);
   problem.regions = find_regions(problem.stencil, problem.conditions);
@@ -187,10 +190,11 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   return problem;
 }
 
-WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
+WindowFields::WindowFields(const FluidProblem& problem)
     : tree(make_closure_tree(problem.stencil, problem.conditions, problem.regions)),
       predictor(problem.stencil, slip_faces(problem.stencil, problem.conditions)),
-      pressure_solver(make_pressure_solver(problem.numerics.solver, mesh, problem.stencil)) {
+      pressure_solver(
+          make_pressure_solver(problem.numerics.solver, problem.lattice, problem.stencil)) {
   const Stencil& s = problem.stencil;
   const auto cell_count = static_cast<std::size_t>(s.cells);
   const auto face_count = static_cast<std::size_t>(s.faces);
@@ -200,14 +204,13 @@ WindowFields::WindowFields(const FluidProblem& problem, const Mesh& mesh)
   matrix.diagonal.assign(cell_count, 0.0);
   matrix.coupling.assign(static_cast<std::size_t>(s.internal_faces), 0.0);
   for (auto* values : {&storage, &source, &pressure, &rhs}) values->assign(cell_count, 0.0);
-  for (auto* values : {&old_flux, &flux, &explicit_part, &mass_flux})
-    values->assign(face_count, 0.0);
-  for (auto* values : {&old_superficial, &superficial, &velocity, &velocity_before, &force,
-                       &specific_force, &closing_gradient}) {
+  flux.assign(face_count, 0.0);
+  for (auto* values : {&superficial, &velocity, &velocity_before, &force, &specific_force}) {
     values->assign(cell_count, Vector3::Zero());
   }
   if (problem.continuity == Continuity::legacy) {
-    for (auto* values : {&face_scale, &face_voidage, &interstitial_flux, &flux_before})
+    for (auto* values :
+         {&explicit_part, &face_scale, &face_voidage, &interstitial_flux, &flux_before})
       values->assign(face_count, 1.0);
     for (auto* values : {&voidage_gradient, &interstitial})
       values->assign(cell_count, Vector3::Zero());
@@ -242,11 +245,8 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
     if (time.two_steps())
       change -= time.before * (old_state.voidage[cell] - old_state.before.voidage[cell]);
     w.storage[cell] = density * s.volume[cell] * change / time.step;
-    w.old_superficial[cell] = old_state.voidage[cell] * old_state.velocity[cell];
     w.pressure[cell] = old_state.pressure[cell] - problem.conditions.level;
   }
-#pragma omp parallel for schedule(static) num_threads(s.threads)
-  for (int f = 0; f < s.faces; ++f) w.old_flux[f] = old_state.face_flux[f] / density;
   if (problem.continuity == Continuity::conservative) {
     settle_closed_regions(s, problem.regions, w.boundary.flux, density, step.window.length,
                           step.window.step, w.storage);
@@ -280,7 +280,7 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
   if (problem.continuity == Continuity::conservative) {
     solve_fluxes(step, w, report);
   } else {
-    evaluate_explicit_flux(problem, w.flux, w, report);
+    evaluate_explicit_flux(problem, w.flux, w, w.explicit_part, report);
     solve_legacy_continuity(step, w, report);
   }
   clock.lap();  // the solve has its own
@@ -294,22 +294,25 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
                   w.velocity_before, w.pressure_slope, w.velocity);
   }
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
-                 w.closing_gradient);
+                 step.new_state.pressure_gradient);
   report.seconds.closure += clock.lap();
 }
 
 void pre_correct(const Step& step, WindowFields& w, FluidReport& report) {
-  const LevelBefore& before = step.old_state.before;
+  const FluidState& old_state = step.old_state;
+  const LevelBefore& before = old_state.before;
   const Stencil& s = step.problem.stencil;
+  const double density = step.problem.fluid.density;
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
-    Vector3 start = w.old_superficial[cell];
+    Vector3 start = old_state.voidage[cell] * old_state.velocity[cell];
     if (w.time.two_steps()) {
       start = extrapolated(w.time, start, Vector3(before.voidage[cell] * before.velocity[cell]));
     }
     w.velocity[cell] = start / step.solids.voidage[cell];
   }
-  std::ranges::copy(w.old_flux, w.flux.begin());
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.flux[f] = old_state.face_flux[f] / density;
   correct(step, false, w, report);
   // `force` belongs to the velocity before: the predictor starts there, deferred parts included.
   std::swap(w.velocity, w.velocity_before);
@@ -326,14 +329,15 @@ void renew_convection(const Step& step, WindowFields& w, FluidReport& report) {
 void predict(const Step& step, WindowFields& w, FluidReport& report) {
   const Stencil& s = step.problem.stencil;
   LapClock clock;
-  report.predictor_iterations += predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
-                                                  w.closing_gradient, w.predictor, w.velocity);
+  report.predictor_iterations +=
+      predict_velocity(s, w.momentum, pressure_share(step, w), w.force,
+                       step.new_state.pressure_gradient, w.predictor, w.velocity);
   report.seconds.predictor += clock.lap();
   if (s.uniform) return;  // no face value of the flux enters
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell)
     w.superficial[cell] = step.solids.voidage[cell] * w.velocity[cell];
-  predict_flux(s, w.old_flux, w.superficial, w.old_superficial, w.flux);
+  predict_flux(s, step.old_state, step.problem.fluid.density, w.superficial, w.flux);
 }
 
 }  // namespace fluxpact

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cfd_server/linear/pressure_solver.hpp"
@@ -18,6 +19,7 @@ namespace fluxpact {
 
 /// Fixed for a run.
 struct FluidProblem {
+  std::optional<Lattice> lattice;  ///< of the mesh
   Stencil stencil;
   BoundaryConditions conditions;
   FluidRegions regions;
@@ -33,7 +35,7 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh);
 
 /// Fields and coefficients of the step in hand. One entry a cell unless stated.
 struct WindowFields {
-  explicit WindowFields(const FluidProblem& problem, const Mesh& mesh);
+  explicit WindowFields(const FluidProblem& problem);
 
   TimeCoefficients time;
   ViscosityFields viscosity;  ///< of turbulence, set before the step; empty without
@@ -47,22 +49,17 @@ struct WindowFields {
 
   std::vector<double> storage;      ///< ρ V dε/dt [kg/s]
   std::vector<double> source;       ///< right-hand side of continuity [m³/s]
-  std::vector<double> old_flux;     ///< φ^n [m³/s], one a face
   std::vector<double> convecting;   ///< Φ [kg/s] at the step's end; bdf2 or outer iterations only
   std::vector<double> ones;         ///< χ of pressure model b; empty with model a
   std::vector<double> flux;         ///< φ of the last corrector [m³/s], one a face
   std::vector<double> flux_before;  ///< φ from which a corrector started [m³/s], one a face
-  std::vector<double> explicit_part;  ///< [m³/s], one a face
-  std::vector<double> mass_flux;      ///< Φ [kg/s], one a face
-  std::vector<double> pressure;       ///< p − level [Pa]
+  std::vector<double> pressure;     ///< p − level [Pa]
   std::vector<double> rhs;
-  std::vector<Vector3> old_superficial;     ///< ε^n u^n
   std::vector<Vector3> superficial;         ///< ε u of the last corrector
   std::vector<Vector3> velocity;            ///< u of the last corrector
   std::vector<Vector3> velocity_before;     ///< u from which it started
   std::vector<Vector3> force;               ///< C(velocity_before) [N]
   std::vector<Vector3> specific_force;      ///< (C + S)/(χ V) [N/m³]
-  std::vector<Vector3> closing_gradient;    ///< ∇p that closes each cell's momentum [Pa/m]
   std::vector<Vector3> pressure_slope;      ///< kinked ∇p [Pa/m], non-orthogonal meshes only
   std::vector<Vector3> slope_coefficients;  ///< of it, one a side
   std::vector<Matrix3> velocity_gradient;   ///< until the superficial one takes its place
@@ -70,6 +67,7 @@ struct WindowFields {
   std::vector<Vector3> jump;                ///< one a boundary face
 
   // continuity: legacy; empty else
+  std::vector<double> explicit_part;      ///< of the flux [m³/s], one a face
   std::vector<double> face_scale;         ///< one a face: 1/ε_f
   std::vector<double> face_voidage;       ///< one a face
   std::vector<double> interstitial_flux;  ///< Λ/ρ [m³/s], one a face
@@ -84,6 +82,7 @@ struct Step {
   const FluidState& old_state;
   const Window& window;
   const SolidsInput& solids;
+  FluidState& new_state;  ///< sized; gets the flux of the last corrector and the pressure gradient
 };
 
 /// Everything that stays the same in all correctors of a step. `time` says how the old levels
@@ -91,8 +90,9 @@ struct Step {
 void open_step(const Step& step, const TimeCoefficients& time, WindowFields& fields,
                FluidReport& report);
 
-/// One pressure correction from `velocity`: new pressure, flux, velocity and closing gradient. With
-/// `last` the fluxes are closed before the velocity is rebuilt from them.
+/// One pressure correction from `velocity`: new pressure, flux, velocity and the pressure gradient
+/// that closes each cell's momentum. With `last` the fluxes are closed before the velocity is
+/// rebuilt from them.
 void correct(const Step& step, bool last, WindowFields& fields, FluidReport& report);
 
 /// Before the predictor: start from ε^n u^n/ε^{n+1} and find the pressure that goes with the new

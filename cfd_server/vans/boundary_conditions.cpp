@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -39,14 +41,15 @@ void check_entry(const std::string& name, const BoundarySettings& entry) {
 }
 
 /// Length of the path from the cell's centre to the wall, along its normal [m].
-double depth(const Stencil& s, std::size_t face) { return s.area_size(face) / s.conductance[face]; }
+double depth(const Stencil& s, int face) { return s.area_size(face) / s.conductance[face]; }
 
 PatchCondition make_condition(const BoundarySettings& entry, const Mesh& mesh, const Patch& patch) {
   const VectorFormula velocity = entry.superficial    ? *entry.superficial
                                  : entry.interstitial ? *entry.interstitial
                                                       : entry.velocity;
   const bool mass_flow = entry.type == BoundaryType::mass_flow;
-  PatchCondition condition{.first = patch.first - mesh.internal_faces(),
+  PatchCondition condition{.name = patch.name,
+                           .first = patch.first - mesh.internal_faces(),
                            .size = patch.size,
                            .type = entry.type,
                            .is_interstitial = entry.interstitial.has_value(),
@@ -78,9 +81,16 @@ void add_kinds(const BoundarySettings& entry, const Stencil& s, const PatchCondi
     if (entry.type == BoundaryType::pressure) conditions.kind[b] = FaceKind::pressure;
     if (entry.type != BoundaryType::wall || entry.slip == Slip::none) continue;
     conditions.kind[b] = FaceKind::slip;
-    const double distance = depth(s, static_cast<std::size_t>(b + s.internal_faces));
+    const double distance = depth(s, b + s.internal_faces);
     conditions.grip[b] = entry.slip == Slip::free ? 0.0 : distance / (distance + entry.slip_length);
   }
+}
+
+[[noreturn]] void refuse(const PatchCondition& patch, const Vector3& x, double time) {
+  throw NumericsError(
+      "fluid: the formula of fluid.boundaries.{} has no finite value at ({:.6g}, {:.6g}, {:.6g}) "
+      "m, t = {} s; it must be finite at every face of the patch, at all times",
+      patch.name, x.x(), x.y(), x.z(), time);
 }
 
 /// p_b − ρ g·x_f [Pa].
@@ -88,6 +98,7 @@ double boundary_pressure(const BoundaryConditions& conditions, const PatchCondit
                          double time) {
   const Vector3& x = conditions.centre[b];
   const double given = patch.scalar(x, time) * patch.factor.shape(x) * patch.factor.pace(time);
+  if (!std::isfinite(given)) refuse(patch, x, time);
   return given - conditions.density * conditions.gravity.dot(x);
 }
 
@@ -115,6 +126,7 @@ void evaluate(const Stencil& s, const BoundaryConditions& conditions, const Patc
         break;
       }
     }
+    if (!given[b].allFinite()) refuse(patch, x, time);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cfd_server/discretisation/stencil.hpp"
@@ -23,6 +24,7 @@ enum class FaceKind : std::uint8_t {
 
 /// What holds on one patch, as functions of place and time.
 struct PatchCondition {
+  std::string name;
   int first = 0;  ///< boundary faces [first, first + size)
   int size = 0;
   BoundaryType type = BoundaryType::wall;
@@ -62,7 +64,8 @@ struct BoundaryValues {
 /// without an entry, an entry without a patch, or an incomplete entry is a ConfigError.
 BoundaryConditions read_boundaries(const Scene& scene, const Mesh& mesh, const Stencil& stencil);
 
-/// Values for this voidage (one a cell) and time [s]. Sizes the arrays on first use.
+/// Values for this voidage (one a cell) and time [s]. Sizes the arrays on first use. Throws
+/// NumericsError naming patch, face and time where a formula gives no finite value.
 void update_boundary_values(const Stencil& stencil, const BoundaryConditions& conditions,
                             std::span<const double> voidage, double time, BoundaryValues& values);
 

@@ -123,20 +123,23 @@ void close_momentum(const Stencil& s, const MomentumCoefficients& c,
   }
 }
 
-void balance_cells(const Stencil& s, const MomentumCoefficients& c,
-                   std::span<const double> pressure_share, std::span<const Vector3> force,
-                   std::span<const Vector3> velocity_before, std::span<const Vector3> gradient,
-                   std::span<Vector3> velocity) {
+void balance_cells(const Stencil& s, const BoundaryConditions& conditions,
+                   const MomentumCoefficients& c, std::span<const double> pressure_share,
+                   std::span<const Vector3> force, std::span<const Vector3> velocity_before,
+                   std::span<const Vector3> gradient, std::span<Vector3> velocity) {
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {
     if (s.few_faces[cell] == 0) continue;
     const double whole = c.inertia[cell] + c.drag[cell] + c.transport[cell];
     double stiffest = c.drag[cell] / c.inertia[cell];
+    bool extrapolated = false;
     for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
       const int other = s.side_other[side];
       if (other >= 0) stiffest = std::max(stiffest, c.drag[other] / c.inertia[other]);
+      const int b = s.side_face[side] - s.internal_faces;
+      extrapolated = extrapolated || (b >= 0 && conditions.kind[b] == FaceKind::pressure);
     }
-    const double dragged = stiffest / (1 + stiffest);
+    const double dragged = extrapolated ? 0.0 : stiffest / (1 + stiffest);
     const Vector3 driving = c.known[cell] + force[cell] +
                             c.transport[cell] * velocity_before[cell] -
                             pressure_share[cell] * s.volume[cell] * gradient[cell];

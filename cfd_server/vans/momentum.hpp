@@ -73,11 +73,12 @@ void close_momentum(const Stencil& stencil, const MomentumCoefficients& coeffici
 /// [m/s], in: as rebuilt; out: the mean of that and of what the cell's balance gives with this ∇p
 /// [Pa/m], by x/(1 + x) with the largest drag over inertia x of the cell and its neighbours. A
 /// rebuilt velocity errs from cell to cell, which viscous stress and convection would feed on; in a
-/// bed and beside it drag rules, and a balance would magnify the error of the gradient. Other cells
-/// are left alone.
-void balance_cells(const Stencil& stencil, const MomentumCoefficients& coefficients,
-                   std::span<const double> pressure_share, std::span<const Vector3> force,
-                   std::span<const Vector3> velocity_before, std::span<const Vector3> gradient,
-                   std::span<Vector3> velocity);
+/// bed and beside it drag rules, and a balance would magnify the error of the gradient. At a
+/// pressure face the balance alone counts: what is rebuilt there rests on an extrapolated gradient
+/// of the velocity, which would feed back. Other cells are left alone.
+void balance_cells(const Stencil& stencil, const BoundaryConditions& conditions,
+                   const MomentumCoefficients& coefficients, std::span<const double> pressure_share,
+                   std::span<const Vector3> force, std::span<const Vector3> velocity_before,
+                   std::span<const Vector3> gradient, std::span<Vector3> velocity);
 
 }  // namespace fluxpact

@@ -15,6 +15,9 @@
 namespace fluxpact {
 namespace {
 
+/// Below it, a failure of a step on cells with few faces has other reasons than stiffness.
+constexpr double notable_stiffness = 100;
+
 void resize(FluidState& state, const Stencil& s) {
   const auto cells = static_cast<std::size_t>(s.cells);
   state.voidage.assign(cells, 1.0);
@@ -22,6 +25,15 @@ void resize(FluidState& state, const Stencil& s) {
   state.velocity.assign(cells, Vector3::Zero());
   state.pressure.assign(cells, 0.0);
   state.pressure_gradient.assign(cells, Vector3::Zero());
+}
+
+Vector3 initial_value(const VectorValue& formula, const Vector3& at) {
+  const Vector3 value = formula(at, 0);
+  if (value.allFinite()) return value;
+  throw NumericsError(
+      "fluid: the formula of fluid.initial.superficial has no finite value at ({:.6g}, {:.6g}, "
+      "{:.6g}) m; it must be finite at all cells and faces",
+      at.x(), at.y(), at.z());
 }
 
 /// Flux of pressure faces so that what flows in flows out: the surplus of each region in proportion
@@ -149,7 +161,7 @@ void VansSolver::Impl::refuse(const Window& window, int count, const SolidsInput
   std::string text = fmt::format("fluid, step {} (coupling.window {:.3g} s in {} inner steps): {}",
                                  window.step, window.length, count, error.what());
   const double stiffness = stiffness_number(problem, solids, window.length / count);
-  if (stiffness > 0) {
+  if (stiffness > notable_stiffness) {
     text += fmt::format(
         "; cells with fewer than six faces (tetrahedra, prisms, pyramids) bear drag and viscous "
         "stress of some 1000 times the inertia of a step, here it is {:.3g} times; use hexahedra "
@@ -220,12 +232,12 @@ void VansSolver::start(std::span<const double> voidage) {
                        self.problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure;
     const Vector3 at = s.centre[s.owner[f]] + s.from_owner[f];
     flux[f] = given ? self.fields->boundary.flux[f - s.internal_faces]
-                    : self.initial_superficial(at, 0).dot(s.area[f]);
+                    : initial_value(self.initial_superficial, at).dot(s.area[f]);
   }
   balance_outlets(self.problem, flux);
   for (int f = 0; f < s.faces; ++f) state.face_flux[f] = self.problem.fluid.density * flux[f];
   for (int cell = 0; cell < s.cells; ++cell) {
-    state.velocity[cell] = self.initial_superficial(s.centre[cell], 0) / voidage[cell];
+    state.velocity[cell] = initial_value(self.initial_superficial, s.centre[cell]) / voidage[cell];
     state.pressure[cell] = self.problem.conditions.level;
     state.pressure_gradient[cell] = Vector3::Zero();
   }

@@ -290,8 +290,8 @@ void correct(const Step& step, bool last, WindowFields& w, FluidReport& report) 
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) w.velocity[cell] /= step.solids.voidage[cell];
   if (!s.few_faces.empty()) {
-    balance_cells(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before,
-                  w.pressure_slope, w.velocity);
+    balance_cells(s, problem.conditions, w.momentum, pressure_share(step, w), w.force,
+                  w.velocity_before, w.pressure_slope, w.velocity);
   }
   close_momentum(s, w.momentum, pressure_share(step, w), w.force, w.velocity_before, w.velocity,
                  step.new_state.pressure_gradient);

@@ -89,6 +89,37 @@ TEST(Profile, mass_flow_keeps_its_total_whatever_its_shape) {
   EXPECT_GT(values.flux[first], values.flux[first + 2]);  // less at the edge than near z = 0.3
 }
 
+/// What the first use of these conditions says against them.
+std::string refusal(const FluidCase& c, double time) {
+  try {
+    values_at(c, time);
+  } catch (const NumericsError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Profile, formulas_without_a_finite_value_are_refused_with_patch_place_and_time) {
+  FluidCase c({1, 1, 1}, {1, 1, 1});
+  BoundarySettings inlet;
+  inlet.type = BoundaryType::velocity;
+  inlet.superficial = VectorFormula();
+  inlet.superficial->components[0] = formula("sqrt(1 - t)");
+  BoundarySettings outlet = pressure_outlet();
+  outlet.value = formula("log(2 - t)");
+  c.side("inlet", Side::x_min, inlet);
+  c.side("outlet", Side::x_max, outlet);
+  c.make_mesh();
+  EXPECT_EQ(refusal(c, 0.5), "no error");
+  EXPECT_NE(refusal(c, 1.5).find("fluid.boundaries.inlet has no finite value at (0, 0.5, 0.5) m, "
+                                 "t = 1.5 s"),
+            std::string::npos)
+      << refusal(c, 1.5);
+  c.scene.fluid.boundaries["inlet"].superficial->components[0] = 1.0;
+  EXPECT_NE(refusal(c, 3).find("fluid.boundaries.outlet has no finite value"), std::string::npos)
+      << refusal(c, 3);
+}
+
 TEST(Profile, mass_flow_without_a_positive_shape_is_refused) {
   FluidCase c({1, 1, 2}, {1, 1, 1});
   BoundarySettings feed;

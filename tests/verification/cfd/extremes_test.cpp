@@ -147,6 +147,28 @@ const auto extremes = ::testing::Values(
     Extreme{.name = "tall cells", .size = {0.006, 0.003, 8}, .may_be_refused = true},
     Extreme{.name = "flat cells", .size = {6, 3, 0.008}, .may_be_refused = true});
 
+class BedAtOutlet : public ::testing::TestWithParam<double> {};
+
+TEST_P(BedAtOutlet, is_borne_by_tetrahedra) {
+  const Extreme extreme{.name = "bed at the outlet", .drag_number = GetParam()};
+  const Mesh mesh = tetrahedra({extreme.cells, {0, 0, 0}, extreme.size, {}, 0.15, 1});
+  VansSolver solver(scene_of(extreme, {"", tetrahedra, 0.15, TimeScheme::euler, PressureModel::a}),
+                    mesh);
+  Solids solids(mesh, extreme.bed);
+  for (int cell = 0; cell < mesh.cells(); ++cell) {
+    solids.drag[cell] = extreme.drag_number * extreme.density * extreme.bed *
+                        mesh.cell_volumes[cell] / extreme.window;
+  }
+  solver.start(solids.voidage);
+  for (int step = 1; step <= 60; ++step) run_window(solver, solids, step, extreme.window);
+  double fastest = 0;
+  for (const Vector3& u : solver.committed().velocity) fastest = std::max(fastest, u.norm());
+  // Uniform flow but for layers at the walls without slip, which can only add a part of it.
+  EXPECT_LT(fastest, 2 * extreme.superficial / extreme.bed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drag, BedAtOutlet, ::testing::Values(0.5, 5.0));
+
 INSTANTIATE_TEST_SUITE_P(
     Of, Extremes,
     ::testing::Combine(extremes,

@@ -26,8 +26,8 @@ struct Stencil {
   std::vector<double> volume;   ///< [m³]
   std::vector<Vector3> centre;  ///< [m] of cells
   AxisVectors area;             ///< [m²]
-  std::vector<double>
-      weight;  ///< w = (x_f − x_P)·A/(d·A): share of the path that lies in P; 1 at the boundary
+  std::vector<double> weight;  ///< w = |(x_f − x_P)·A|/(|(x_f − x_P)·A| + |(x_f − x_N)·A|): share
+                               ///< of the path that lies in P; 1 at the boundary
   std::vector<double> conductance;  ///< g = |A|²/max(A·d, |A||d|/20) [m]
   std::vector<Vector3>
       cross;  ///< k = A − g d [m²], perpendicular to A; empty if the mesh is orthogonal

@@ -14,7 +14,7 @@ Turbulence::Turbulence(const Scene& scene, const Mesh& mesh, const Stencil& s,
       density_(scene.fluid.density),
       viscosity_(scene.fluid.viscosity),
       smagorinsky_constant_(scene.fluid.turbulence.smagorinsky_constant),
-      coefficients_(gradient_coefficients(s, faces_with_value(conditions, false))) {
+      coefficients_(gradient_coefficients(s, faces_with_velocity(conditions))) {
   const auto cells = static_cast<std::size_t>(s.cells);
   jump_.assign(static_cast<std::size_t>(s.boundary_faces()), Vector3::Zero());
   gradient_.assign(cells, Matrix3::Zero());

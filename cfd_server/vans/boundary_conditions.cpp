@@ -212,10 +212,9 @@ void boundary_jump(const Stencil& s, const BoundaryConditions& conditions,
   }
 }
 
-std::vector<std::uint8_t> faces_with_value(const BoundaryConditions& conditions, bool of_pressure) {
+std::vector<std::uint8_t> faces_with_velocity(const BoundaryConditions& conditions) {
   std::vector<std::uint8_t> flags;
-  for (const FaceKind kind : conditions.kind)
-    flags.push_back((kind == FaceKind::pressure) == of_pressure ? 1 : 0);
+  for (const FaceKind kind : conditions.kind) flags.push_back(kind == FaceKind::pressure ? 0 : 1);
   return flags;
 }
 

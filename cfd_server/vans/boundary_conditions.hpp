@@ -76,8 +76,7 @@ void boundary_jump(const Stencil& stencil, const BoundaryConditions& conditions,
                    std::span<const Vector3> prescribed, std::span<const Vector3> field,
                    std::span<Vector3> jump);
 
-/// 1 for the boundary faces that give a velocity (all but pressure faces), or (of_pressure) a
-/// pressure.
-std::vector<std::uint8_t> faces_with_value(const BoundaryConditions& conditions, bool of_pressure);
+/// 1 for the boundary faces that give a velocity: all but pressure faces.
+std::vector<std::uint8_t> faces_with_velocity(const BoundaryConditions& conditions);
 
 }  // namespace fluxpact

@@ -175,7 +175,7 @@ FluidProblem make_problem(const Scene& scene, const Mesh& mesh) {
   problem.model = scene.interphase.model;
   const bool lattice = mesh.lattice.has_value();
   problem.gradient = AxisVectors(
-      gradient_coefficients(problem.stencil, faces_with_value(problem.conditions, false)), lattice);
+      gradient_coefficients(problem.stencil, faces_with_velocity(problem.conditions)), lattice);
   problem.reconstruction = AxisVectors(reconstruction_coefficients(problem.stencil), lattice);
   if (problem.continuity == Continuity::legacy) {
     for (const FluidRegion& region : problem.regions.list) {

@@ -185,11 +185,6 @@ void describe(Visit& visit, BoundarySettings& boundary) {
          .only_with = "type: velocity | mass_flow | pressure",
          .meaning = "Tables that multiply the value."},
         boundary.profile);
-  visit({.name = "ramp",
-         .dimension = Dimension::time,
-         .range = not_negative,
-         .meaning = "The value grows linearly from 0 during this time; 0: at once."},
-        boundary.ramp);
   visit({.name = "slip",
          .applies = wall,
          .only_with = "type: wall",
@@ -210,6 +205,13 @@ void describe(Visit& visit, BoundarySettings& boundary) {
          .only_with = "type: wall, slip: none | partial",
          .meaning = "Of a wall that moves along itself; its part normal to the wall is left out."},
         boundary.velocity);
+  visit({.name = "ramp",
+         .dimension = Dimension::time,
+         .range = not_negative,
+         .applies = !wall || boundary.slip != Slip::free,
+         .only_with = "type: velocity | mass_flow | pressure, or slip: none | partial",
+         .meaning = "The value grows linearly from 0 during this time; 0: at once."},
+        boundary.ramp);
 }
 
 template <class Visit>

@@ -72,15 +72,15 @@ void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
   const FluidScalars* const scalars = solver().scalars();
   for (int i = 0; scalars != nullptr && i < scalars->count(); ++i)
     add_scalar(scalars->name(i), scalars->candidate(i), out);
-  out.add_number(field::solver_iterations, solver().report().iterations);
-  out.add_number(field::closure_correction, solver().report().closure_correction);
   const FluidReport& report = solver().report();
+  out.add_number(field::solver_iterations, report.iterations);
+  out.add_number(field::closure_correction, report.closure_correction);
   spdlog::debug(
-      "step {}: {} pressure iterations in {:.3g} ms after {:.3g} ms of set-up; predictor {:.3g} "
-      "ms, "
-      "assembly {:.3g} ms, closure {:.3g} ms",
-      window.step, report.iterations, 1e3 * report.seconds.pressure, 1e3 * report.seconds.setup,
-      1e3 * report.seconds.predictor, 1e3 * report.seconds.assembly, 1e3 * report.seconds.closure);
+      "step {}: {} inner steps, {} of second order; {} pressure iterations in {:.3g} ms after "
+      "{:.3g} ms of set-up; predictor {:.3g} ms, assembly {:.3g} ms, closure {:.3g} ms",
+      window.step, report.inner_steps, report.second_order_steps, report.iterations,
+      1e3 * report.seconds.pressure, 1e3 * report.seconds.setup, 1e3 * report.seconds.predictor,
+      1e3 * report.seconds.assembly, 1e3 * report.seconds.closure);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
   out.add_number(field::wall_seconds, spent.count());
 }

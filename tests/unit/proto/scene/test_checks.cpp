@@ -39,6 +39,14 @@ TEST(SceneChecks, end_time_is_a_whole_number_of_windows) {
                "s.yaml:7:11: coupling.window: ", {"1e+11 windows"});
 }
 
+TEST(SceneChecks, a_ramp_needs_something_that_grows) {
+  EXPECT_EQ(errors_in(with("value: 10}", "value: 10, ramp: 1 s}")), "");
+  EXPECT_EQ(errors_in(with("slip: free}", "ramp: 1 s, velocity: [0, 0, 1]}")), "");
+  EXPECT_NE(errors_in(with("slip: free}", "slip: free, ramp: 1 s}"))
+                .find("fluid.boundaries.walls.ramp: has no meaning here"),
+            std::string::npos);
+}
+
 TEST(SceneChecks, box_has_a_volume) {
   expect_error(with("upper: [0.1, 0.1, 0.2]", "upper: [0.1, 0, 0.2]"),
                "s.yaml:16:29: fluid.mesh.box.upper: 0 in y", {});

@@ -209,7 +209,8 @@ void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
       list.listed_at[i].offset[axis] =
           static_cast<float>(from.spheres[i].position[axis] - list.origin[axis]);
     }
-    list.listed_at[i].offset[3] = 0;
+    // In line with the radius, the last number of a row of positions.
+    list.listed_at[i].offset[3] = static_cast<float>(from.spheres[i].radius);
   }
 }
 

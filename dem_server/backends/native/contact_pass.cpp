@@ -78,14 +78,28 @@ HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table) {
           hn::Set(d, law.damping), hn::Set(d, law.friction)};
 }
 
-template <class Real>
-HWY_INLINE void add_row(const Real* HWY_RESTRICT row, Real* HWY_RESTRICT sum) {
-  for (int a = 0; a < 4; ++a) sum[a] += row[a];
-}
-template <class Real>
-HWY_INLINE void subtract_row(const Real* HWY_RESTRICT row, Real* HWY_RESTRICT sum) {
-  for (int a = 0; a < 4; ++a) sum[a] -= row[a];
-}
+/// Loads of a batch, one row of `Load` a lane.
+template <class Real, bool turning>
+struct LoadRows {
+  static constexpr int numbers = turning ? 8 : 4;
+  alignas(64) Real row[width][numbers];
+
+  HWY_INLINE explicit LoadRows(const ForceLanes<hn::Vec<Lanes<Real>>>& from) {
+    const Lanes<Real> d;
+    store_rows<numbers>(d, from.force.x, from.force.y, from.force.z, &row[0][0]);
+    if constexpr (turning) {
+      store_rows<numbers>(d, from.lever.x, from.lever.y, from.lever.z, &row[0][4]);
+    }
+  }
+  HWY_INLINE void add(int lane, Load<Real, turning>& to) const {
+    add_row<numbers, false>(row[lane], to.force);
+  }
+  /// What the partner gets: the opposite force, but an equal lever force, since the arm points the
+  /// other way as well.
+  HWY_INLINE void add_mirrored(int lane, Load<Real, turning>& to) const {
+    add_row<numbers, true>(row[lane], to.force);
+  }
+};
 
 template <class Real, bool turning>
 HWY_INLINE Lanes3<hn::Vec<Lanes<Real>>> load_spring(const Springs<Real>& springs, int at) {
@@ -166,23 +180,11 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
   contact_force<turning>(d, law_of(*pass.laws), touch,
                          hn::Set(d, static_cast<Real>(pass.spring_step)), spring, gap.touching,
                          out);
-  alignas(64) Real force[4 * width];
-  store_rows(d, out.force.x, out.force.y, out.force.z, force);
-  alignas(64) Real lever[4 * width];
-  if constexpr (turning) {
-    store_spring<Real>(spring, at, springs);
-    store_rows(d, out.lever.x, out.lever.y, out.lever.z, lever);
-  }
+  if constexpr (turning) store_spring<Real>(spring, at, springs);
+  const LoadRows<Real, turning> loads(out);
   for (int k = 0; k < width; ++k) {
-    Load<Real, turning>& own = pass.sum[pairs[k].mine];
-    add_row(force + 4 * k, own.force);
-    if constexpr (turning) add_row(lever + 4 * k, own.lever);
-    if constexpr (kind == Kind::inner) {
-      Load<Real, turning>& other = pass.sum[pairs[k].other];
-      subtract_row(force + 4 * k, other.force);
-      // Equal, not opposite: the arm points the other way for the partner, and so does the force.
-      if constexpr (turning) add_row(lever + 4 * k, other.lever);
-    }
+    loads.add(k, pass.sum[pairs[k].mine]);
+    if constexpr (kind == Kind::inner) loads.add_mirrored(k, pass.sum[pairs[k].other]);
   }
 }
 
@@ -240,18 +242,9 @@ HWY_INLINE void pass_planes(const BlockPass<Real, turning>& pass, const NearPlan
   ForceLanes<V> out;
   contact_force<turning>(d, law_of(*pass.laws), touch,
                          hn::Set(d, static_cast<Real>(pass.spring_step)), spring, touching, out);
-  alignas(64) Real force[4 * width];
-  store_rows(d, out.force.x, out.force.y, out.force.z, force);
-  alignas(64) Real lever[4 * width];
-  if constexpr (turning) {
-    store_spring<Real>(spring, at, springs);
-    store_rows(d, out.lever.x, out.lever.y, out.lever.z, lever);
-  }
-  for (int k = 0; k < count; ++k) {
-    Load<Real, turning>& own = pass.sum[near[k].mine];
-    add_row(force + 4 * k, own.force);
-    if constexpr (turning) add_row(lever + 4 * k, own.lever);
-  }
+  if constexpr (turning) store_spring<Real>(spring, at, springs);
+  const LoadRows<Real, turning> loads(out);
+  for (int k = 0; k < count; ++k) loads.add(k, pass.sum[near[k].mine]);
 }
 
 template <class Real, bool turning>
@@ -275,43 +268,45 @@ HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
   pass_plane_list(pass, contacts.planes, contacts.plane_springs);
 }
 
-/// The kick of one particle: `next` gets the new velocity and spin.
+/// The kick of one particle: `next` gets the new velocity and spin. Masses and radii, the last
+/// numbers of their rows, stay as they are, since those of loads and drives are 0.
 template <class Real, bool turning>
-HWY_INLINE void kick(const Body<Real, turning>& now, const Load<Real, turning>& load,
-                     const Drive<Real>& drive, Real time_step, Body<Real, turning>& next) {
-  const Real inverse_mass = now.inverse_mass;
-  for (int a = 0; a < 3; ++a) {
-    next.velocity[a] =
-        now.velocity[a] + time_step * (load.force[a] * inverse_mass + drive.acceleration[a]);
-  }
-  next.inverse_mass = inverse_mass;
+HWY_INLINE Row<Real> kick(const Body<Real, turning>& now, const Load<Real, turning>& load,
+                          const Drive<Real>& drive, Real time_step, Body<Real, turning>& next) {
+  const Row<Real> acceleration = multiply_add(
+      load_row(load.force), same_row(now.inverse_mass), load_row(drive.acceleration));
+  const Row<Real> velocity =
+      multiply_add(acceleration, same_row(time_step), load_row(now.velocity));
+  store_row(velocity, next.velocity);
   if constexpr (turning) {
     // d(r ω)/dt = r² F/I, I = 2/5 m r²
-    const Real turn = Real(2.5) * time_step * inverse_mass;
-    for (int a = 0; a < 3; ++a) {
-      next.radius_spin[a] = now.radius_spin[a] + turn * load.lever[a];
-    }
-    next.inverse_radius = now.inverse_radius;
+    const Row<Real> turn = same_row(Real(2.5) * time_step * now.inverse_mass);
+    store_row(multiply_add(load_row(load.lever), turn, load_row(now.radius_spin)),
+              next.radius_spin);
   }
+  return velocity;
 }
 
+/// Kick and drift of the block, with its loads.
 template <class Real, bool turning>
 HWY_INLINE bool move(const BlockPass<Real, turning>& pass, const Load<Real, turning>* loads,
-                     double kick_step) {  // loads: of the block
-  bool beyond = false;
+                     double kick_step) {
+  alignas(32) const double steps[4] = {pass.time_step, pass.time_step, pass.time_step, 0};
+  alignas(32) const double origins[4] = {pass.origin[0], pass.origin[1], pass.origin[2], 0};
+  const Row<double> step = load_row(steps);  // 0 for the radius
+  const Row<double> origin = load_row(origins);
   const double limit = pass.reach * pass.reach;
+  bool beyond = false;
   for (int i = pass.first; i < pass.last; ++i) {
     const Body<Real, turning>& now = pass.now[i];
     Body<Real, turning>& next = pass.next[i];
-    kick(now, loads[i - pass.first], pass.drive[i], static_cast<Real>(kick_step), next);
-    double square = 0;
-    for (int a = 0; a < 3; ++a) {
-      next.position[a] = now.position[a] + pass.time_step * static_cast<double>(next.velocity[a]);
-      const double moved =
-          next.position[a] - (pass.origin[a] + static_cast<double>(pass.listed_at[i].offset[a]));
-      square += moved * moved;
-    }
-    next.radius = now.radius;
+    const Row<Real> velocity =
+        kick(now, loads[i - pass.first], pass.drive[i], static_cast<Real>(kick_step), next);
+    const Row<double> before = load_row(now.position);
+    const Row<double> position = multiply_add(widened<Real>(velocity), step, before);
+    store_row(position, next.position);
+    const Row<double> listed = widened<float>(load_row(pass.listed_at[i].offset));
+    const double square = square_norm(subtract(subtract(position, origin), listed));
     beyond |= !(square <= limit);  // this way round it is true for NaN
   }
   return beyond;
@@ -324,8 +319,7 @@ HWY_INLINE bool pass_any(const BlockPass<Real, turning>& pass) {
   if (pass.phase == Phase::drift) return move(pass, pass.sum, pass.time_step);
   for (int i = pass.first; i < pass.last; ++i) {
     Body<Real, turning>& next = pass.next[i];
-    std::copy(pass.now[i].position, pass.now[i].position + 3, next.position);
-    next.radius = pass.now[i].radius;
+    store_row(load_row(pass.now[i].position), next.position);
     pass.load[i] = pass.sum[i - pass.first];
     kick(pass.now[i], pass.load[i], pass.drive[i], static_cast<Real>(0.5 * pass.time_step), next);
   }

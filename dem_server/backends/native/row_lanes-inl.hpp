@@ -29,7 +29,90 @@ inline constexpr int lanes_of = static_cast<int>(hn::MaxLanes(D()));
 template <class D>
 inline constexpr bool holds_rows = lanes_of<D> == 4 || lanes_of<D> == 8;
 
-#if HWY_TARGET != HWY_SCALAR  // which has no shuffles
+// ---- one row ----
+
+#if HWY_MAX_BYTES >= 32
+template <class T>
+using Row = hn::Vec<hn::FixedTag<T, 4>>;
+
+template <class T>
+HWY_INLINE Row<T> load_row(const T* row) {
+  return hn::Load(hn::FixedTag<T, 4>(), row);
+}
+template <class T>
+HWY_INLINE void store_row(Row<T> value, T* row) {
+  hn::Store(value, hn::FixedTag<T, 4>(), row);
+}
+template <class T>
+HWY_INLINE Row<T> same_row(T value) {
+  return hn::Set(hn::FixedTag<T, 4>(), value);
+}
+/// a b + c
+template <class V>
+HWY_INLINE V multiply_add(V a, V b, V c) {
+  return hn::MulAdd(a, b, c);
+}
+template <class V>
+HWY_INLINE V subtract(V a, V b) {
+  return hn::Sub(a, b);
+}
+template <class T>
+HWY_INLINE Row<double> widened(Row<T> row) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    return row;
+  } else {
+    return hn::PromoteTo(hn::FixedTag<double, 4>(), row);
+  }
+}
+HWY_INLINE double square_norm(Row<double> row) {
+  const hn::FixedTag<double, 4> d;
+  return hn::GetLane(hn::SumOfLanes(d, hn::Mul(row, row)));
+}
+#else  // registers are narrower than a row
+template <class T>
+struct Row {
+  T value[4];
+};
+template <class T>
+HWY_INLINE Row<T> load_row(const T* row) {
+  return {{row[0], row[1], row[2], row[3]}};
+}
+template <class T>
+HWY_INLINE void store_row(Row<T> value, T* row) {
+  for (int c = 0; c < 4; ++c) row[c] = value.value[c];
+}
+template <class T>
+HWY_INLINE Row<T> same_row(T value) {
+  return {{value, value, value, value}};
+}
+template <class T>
+HWY_INLINE Row<T> multiply_add(const Row<T>& a, const Row<T>& b, const Row<T>& c) {
+  Row<T> sum = c;
+  for (int k = 0; k < 4; ++k) sum.value[k] += a.value[k] * b.value[k];
+  return sum;
+}
+template <class T>
+HWY_INLINE Row<T> subtract(const Row<T>& a, const Row<T>& b) {
+  Row<T> difference = a;
+  for (int k = 0; k < 4; ++k) difference.value[k] -= b.value[k];
+  return difference;
+}
+template <class T>
+HWY_INLINE Row<double> widened(const Row<T>& row) {
+  Row<double> wide{};
+  for (int c = 0; c < 4; ++c) wide.value[c] = static_cast<double>(row.value[c]);
+  return wide;
+}
+HWY_INLINE double square_norm(const Row<double>& row) {
+  double sum = 0;
+  for (const double number : row.value) sum += number * number;
+  return sum;
+}
+#endif
+
+// ---- one row a lane ----
+
+#if HWY_MAX_BYTES >= 32
 
 /// Four rows in each half of the lanes (8 lanes: rows k and k + 4 side by side) to components, or
 /// back: the same shuffles do both.
@@ -78,7 +161,7 @@ HWY_INLINE Quad<V> load_rows(D d, const T* const* row) {
 /// `flip` holds -0.0 (the same four numbers again and again, for as many lanes as there are).
 template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* second, const T* flip) {
-#if HWY_TARGET != HWY_SCALAR
+#if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) {
     const V sign = hn::Load(d, flip);
     const Quad<V> a = load_rows(d, first);
@@ -101,7 +184,7 @@ HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* seco
 /// Components of the rows at the given addresses.
 template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> gather_rows(D d, const T* const* row) {
-#if HWY_TARGET != HWY_SCALAR
+#if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) return transpose(d, load_rows(d, row));
 #endif
   T lanes[4][lanes_of<D>];
@@ -112,25 +195,25 @@ HWY_INLINE Quad<V> gather_rows(D d, const T* const* row) {
           hn::LoadU(d, lanes[3])};
 }
 
-/// Components to rows: row[4 k ... 4 k + 2] of lane k; the fourth number of each row is 0.
-template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+/// Components to rows: rows[stride k ... stride k + 2] of lane k; the fourth number of each is 0.
+template <int stride, class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE void store_rows(D d, V x, V y, V z, T* HWY_RESTRICT rows) {
-#if HWY_TARGET != HWY_SCALAR
+#if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) {
     const Quad<V> t = transpose(d, Quad<V>{x, y, z, hn::Zero(d)});
-    if constexpr (lanes_of<D> == 8) {
-      const hn::Half<D> half;
-      const V* const vectors[4] = {&t.a, &t.b, &t.c, &t.d};
-      for (int k = 0; k < 4; ++k) {
-        hn::Store(hn::LowerHalf(half, *vectors[k]), half, rows + 4 * k);
-        hn::Store(hn::UpperHalf(half, *vectors[k]), half, rows + 4 * (k + 4));
+    const auto put = [&](V v, int k) {
+      if constexpr (lanes_of<D> == 8) {
+        const hn::Half<D> half;
+        hn::Store(hn::LowerHalf(half, v), half, rows + stride * k);
+        hn::Store(hn::UpperHalf(half, v), half, rows + stride * (k + 4));
+      } else {
+        hn::Store(v, d, rows + stride * k);
       }
-    } else {
-      hn::Store(t.a, d, rows);
-      hn::Store(t.b, d, rows + 4);
-      hn::Store(t.c, d, rows + 8);
-      hn::Store(t.d, d, rows + 12);
-    }
+    };
+    put(t.a, 0);
+    put(t.b, 1);
+    put(t.c, 2);
+    put(t.d, 3);
     return;
   }
 #endif
@@ -139,9 +222,26 @@ HWY_INLINE void store_rows(D d, V x, V y, V z, T* HWY_RESTRICT rows) {
   hn::StoreU(y, d, lanes[1]);
   hn::StoreU(z, d, lanes[2]);
   for (int lane = 0; lane < lanes_of<D>; ++lane) {
-    for (int c = 0; c < 3; ++c) rows[4 * lane + c] = lanes[c][lane];
-    rows[4 * lane + 3] = 0;
+    for (int c = 0; c < 3; ++c) rows[stride * lane + c] = lanes[c][lane];
+    rows[stride * lane + 3] = 0;
   }
+}
+
+/// sum += row of so many numbers (4 or 8), or, if `mirrored`, its first four numbers change sign.
+template <int numbers, bool mirrored, class T>
+HWY_INLINE void add_row(const T* HWY_RESTRICT row, T* HWY_RESTRICT sum) {
+#if HWY_MAX_BYTES >= 32
+  constexpr int most = HWY_MAX_BYTES / static_cast<int>(sizeof(T));
+  const hn::FixedTag<T, (numbers < most ? numbers : most)> d;
+  alignas(64) static constexpr T mirror[8] = {-T(0), -T(0), -T(0), -T(0), 0, 0, 0, 0};
+  for (int at = 0; at < numbers; at += lanes_of<decltype(d)>) {
+    auto value = hn::Load(d, row + at);
+    if constexpr (mirrored) value = hn::Xor(value, hn::Load(d, mirror + at));
+    hn::Store(hn::Add(hn::Load(d, sum + at), value), d, sum + at);
+  }
+#else
+  for (int c = 0; c < numbers; ++c) sum[c] += mirrored && c < 4 ? -row[c] : row[c];
+#endif
 }
 
 }  // namespace fluxpact::HWY_NAMESPACE

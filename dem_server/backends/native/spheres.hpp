@@ -32,7 +32,7 @@ struct alignas(4 * sizeof(Real)) Body<Real, false> {
 /// Sum over the contacts of a particle. The lever arm is the same for all of them, its radius, so
 /// the torque is the radius times `lever`.
 template <class Real, bool turning>
-struct alignas(4 * sizeof(Real)) Load {
+struct alignas(8 * sizeof(Real)) Load {
   Real force[4];  ///< [N]; the last number is 0
   Real lever[4];  ///< [N] Σ (arm direction) × (tangential force); the last number is 0
 };

@@ -28,12 +28,12 @@ struct TouchLanes {
   V overlap;              // [m]
   Lanes3<V> velocity;     // [m/s] of the particle's centre relative to the partner's
   Lanes3<V> radius_spin;  // [m/s] sum of radius x spin rate over both
-  V inverse_mass;         // [1/kg] sum of 1/m
+  V root_mass;            // [kg^0.5] of the effective mass
 };
 
 template <class V>
 struct LawLanes {
-  V normal_stiffness, tangential_stiffness, damping, friction;
+  V normal_stiffness, tangential_stiffness, inverse_tangential_stiffness, damping, friction;
 };
 
 template <class V>
@@ -51,7 +51,7 @@ HWY_INLINE void contact_force(D d, const LawLanes<V>& law, const TouchLanes<V>& 
                               Lanes3<V>& spring, hn::Mask<D> touching, ForceLanes<V>& out) {
   const Lanes3<V>& n = touch.normal;
   const Lanes3<V>& v = touch.velocity;
-  const V damping = hn::Div(law.damping, hn::Sqrt(touch.inverse_mass));
+  const V damping = hn::Mul(law.damping, touch.root_mass);
   const V approach = dot(v, n);
   const V normal =
       hn::NegMulAdd(damping, approach, hn::Mul(law.normal_stiffness, touch.overlap));
@@ -79,7 +79,7 @@ HWY_INLINE void contact_force(D d, const LawLanes<V>& law, const TouchLanes<V>& 
     if (!hn::AllFalse(d, slides)) {
       const V share = hn::IfThenElse(slides, hn::Div(limit, hn::Sqrt(square)), hn::Set(d, 1));
       t = {hn::Mul(share, t.x), hn::Mul(share, t.y), hn::Mul(share, t.z)};
-      const V inverse = hn::Div(hn::Set(d, 1), kt);
+      const V inverse = law.inverse_tangential_stiffness;
       xi = {hn::IfThenElse(slides, hn::Mul(inverse, hn::Sub(t.x, dash.x)), xi.x),
             hn::IfThenElse(slides, hn::Mul(inverse, hn::Sub(t.y, dash.y)), xi.y),
             hn::IfThenElse(slides, hn::Mul(inverse, hn::Sub(t.z, dash.z)), xi.z)};

@@ -33,7 +33,7 @@ double damping_coefficient(const PairLaw& law, double effective_mass);
 template <class Real>
 struct LawTable {
   struct Row {
-    Real normal_stiffness, tangential_stiffness, damping, friction;
+    Real normal_stiffness, tangential_stiffness, inverse_tangential_stiffness, damping, friction;
   };
   std::vector<Row> rows;
 };
@@ -54,6 +54,7 @@ class ContactLaws {
     for (const PairLaw& law : laws_) {
       table.rows.push_back({static_cast<Real>(law.normal_stiffness),
                             static_cast<Real>(law.tangential_stiffness),
+                            static_cast<Real>(1 / law.tangential_stiffness),
                             static_cast<Real>(2 * law.damping_ratio *
                                               std::sqrt(law.normal_stiffness)),
                             static_cast<Real>(law.friction)});

@@ -37,17 +37,16 @@ struct Springs {
   static constexpr int widest = 16;  // contacts in one register
   HugeVector<Real> values;
   int contacts = 0;
+  std::ptrdiff_t stride = 0;  // from one row to the next
 
-  int stride() const { return (contacts + widest - 1) / widest * widest; }
   /// All zero, for so many contacts with so many numbers each.
   void reset(int count, int numbers) {
     contacts = count;
-    values.assign(static_cast<std::size_t>(stride()) * numbers, Real(0));
+    stride = (count + widest - 1) / widest * widest;
+    values.assign(static_cast<std::size_t>(stride) * numbers, Real(0));
   }
-  Real* row(int number) { return values.data() + static_cast<std::ptrdiff_t>(number) * stride(); }
-  const Real* row(int number) const {
-    return values.data() + static_cast<std::ptrdiff_t>(number) * stride();
-  }
+  Real* row(int number) { return values.data() + number * stride; }
+  const Real* row(int number) const { return values.data() + number * stride; }
 };
 
 /// The contacts of the particles of one block, each list ascending by the holder.

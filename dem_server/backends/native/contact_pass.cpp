@@ -52,8 +52,9 @@ struct Gap {
   hn::Mask<Lanes<Real>> touching;
 };
 
-/// From the vector between the centres and the sum of the radii. The overlap is (R² - d²)/(R + d),
-/// with the numerator in double: exact where the subtraction of two lengths would not be in float.
+/// From the vector between the centres and the sum of the radii. In float the overlap is
+/// (R² - d²)/(R + d) with the numerator in double, since the difference of two lengths would keep
+/// few digits.
 template <class Real>
 HWY_INLINE Gap<Real> gap_between(hn::Vec<Positions> x, hn::Vec<Positions> y,
                                  hn::Vec<Positions> z, hn::Vec<Positions> radii, int count) {
@@ -64,10 +65,15 @@ HWY_INLINE Gap<Real> gap_between(hn::Vec<Positions> x, hn::Vec<Positions> y,
   const auto square_real = to_real<Real>(square);
   const auto distance = hn::Sqrt(square_real);
   const auto inverse = hn::Div(hn::Set(d, 1), distance);
+  hn::Vec<Lanes<Real>> overlap;
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    overlap = hn::Sub(radii, distance);
+  } else {
+    overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
+  }
   return {{hn::Mul(to_real<Real>(x), inverse), hn::Mul(to_real<Real>(y), inverse),
            hn::Mul(to_real<Real>(z), inverse)},
-          hn::Div(difference, hn::Add(to_real<Real>(radii), distance)),
-          touching};
+          overlap, touching};
 }
 
 template <class Real>
@@ -75,7 +81,17 @@ HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table) {
   const Lanes<Real> d;
   const auto& law = table.rows.front();
   return {hn::Set(d, law.normal_stiffness), hn::Set(d, law.tangential_stiffness),
+          hn::Set(d, law.inverse_tangential_stiffness),
           hn::Set(d, law.damping), hn::Set(d, law.friction)};
+}
+
+/// Root of the effective mass [kg^0.5]: what holds for all contacts, if that is known, else from the
+/// sum of the inverse masses.
+template <class Real>
+HWY_INLINE hn::Vec<Lanes<Real>> root_mass(double known, hn::Vec<Lanes<Real>> inverse_mass) {
+  const Lanes<Real> d;
+  if (known > 0) return hn::Set(d, static_cast<Real>(known));
+  return hn::Sqrt(hn::Div(hn::Set(d, 1), inverse_mass));
 }
 
 /// Loads of a batch, one row of `Load` a lane.
@@ -166,7 +182,7 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
   touch.normal = gap.normal;
   touch.overlap = gap.overlap;
   touch.velocity = {v.a, v.b, v.c};
-  touch.inverse_mass = v.d;
+  touch.root_mass = root_mass<Real>(pass.root_masses.pair, v.d);
   if constexpr (turning) {
     for (int k = 0; k < width; ++k) {
       row_a[k] = a[k]->radius_spin;
@@ -232,7 +248,7 @@ HWY_INLINE void pass_planes(const BlockPass<Real, turning>& pass, const NearPlan
   for (int k = 0; k < width; ++k) real_rows[k] = mine[near[k].mine].velocity;
   const auto v = gather_rows(d, real_rows);
   touch.velocity = {v.a, v.b, v.c};
-  touch.inverse_mass = v.d;
+  touch.root_mass = root_mass<Real>(pass.root_masses.wall, v.d);
   if constexpr (turning) {
     for (int k = 0; k < width; ++k) real_rows[k] = mine[near[k].mine].radius_spin;
     const auto w = gather_rows(d, real_rows);

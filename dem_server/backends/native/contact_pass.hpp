@@ -16,6 +16,12 @@ namespace fluxpact {
 
 enum class Phase { start, drift, settle };
 
+/// Roots of effective masses [kg^0.5] where they are the same for all contacts; 0 where they are not.
+struct RootMasses {
+  double pair = 0;
+  double wall = 0;
+};
+
 template <class Real, bool turning>
 struct BlockPass {
   Phase phase = Phase::start;
@@ -35,6 +41,7 @@ struct BlockPass {
   const double (*shifts)[4] = nullptr;  ///< [m] displacement of each Shift
   const double (*planes)[4] = nullptr;  ///< of each side: unit normal into the domain, n·x on it [m]
   const LawTable<Real>* laws = nullptr;
+  RootMasses root_masses;
 };
 
 /// Returns true if, after a drift, some particle is farther than `reach` from where the list was

@@ -19,14 +19,27 @@ namespace {
 constexpr double skin_per_diameter = 0.15;
 /// Rows and loads of a block stay in a core's own cache; pairs between blocks cost double, so the
 /// blocks are as large as that allows, but enough for some threads in small scenes.
-constexpr int largest_block = 4096;
-constexpr int least_blocks = 16;
+constexpr int largest_block = 8192;
+constexpr int least_blocks = 4;
 constexpr int smallest_block = 128;
 
 template <class Real>
 struct SavedSprings {
   Springs<Real> inner, outer, image, plane;
 };
+
+/// Of particles that all have the same mass.
+RootMasses common_root_masses(const ParticleState& particles) {
+  const int count = particles.size();
+  const auto mass = [&](int row) {
+    return sphere_mass(particles.radius[row], particles.density[row]);
+  };
+  for (int row = 1; row < count; ++row) {
+    if (mass(row) != mass(0)) return {};
+  }
+  if (count == 0) return {};
+  return {std::sqrt(mass(0) / 2), std::sqrt(mass(0))};
+}
 
 template <class Real, bool turning>
 class NativeEngine final : public ParticleEngine {
@@ -68,6 +81,7 @@ class NativeEngine final : public ParticleEngine {
   bool any_periodic_;
   int threads_;
   StepLimit limit_;
+  RootMasses root_masses_;
   double skin_ = 0;
 
   ParticleState presented_;
@@ -167,6 +181,7 @@ void NativeEngine<Real, turning>::load_rows() {
     if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
     list.row[row] = row;
   }
+  root_masses_ = common_root_masses(presented_);
   loads_.resize(count);
   candidate_loads_.resize(count);
   drive_.assign(count, {});
@@ -214,6 +229,7 @@ bool NativeEngine<Real, turning>::sweep(Phase phase, double time_step, double sp
   all.shifts = shifts_.data();
   all.planes = planes_.data();
   all.laws = &law_table_;
+  all.root_masses = root_masses_;
   bool beyond = false;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(|| : beyond)
   for (int b = 0; b < blocks.count(); ++b) {

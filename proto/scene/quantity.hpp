@@ -22,6 +22,9 @@ enum class Dimension {
   diffusivity,
   conductivity,
   heat_capacity,
+  energy_density,
+  volume,
+  angle,
 };
 
 /// The SI unit in which numbers without a suffix are taken, e.g. "m/s"; empty for Dimension::none.

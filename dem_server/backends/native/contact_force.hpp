@@ -32,7 +32,7 @@ inline void add_contact(const Touch& touch, const PairLaw& law, double damping, 
   const double* n = touch.normal;
   const double* v = touch.velocity;
   const double normal_velocity = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
-  const double normal_force = law.normal_stiffness * touch.overlap - damping * normal_velocity;
+  const double normal_force = law[LawColumn::normal] * touch.overlap - damping * normal_velocity;
   for (int a = 0; a < 3; ++a) load.force[a] = normal_force * n[a];
   if constexpr (friction) {
     const double* w = touch.radius_spin;
@@ -45,15 +45,15 @@ inline void add_contact(const Touch& touch, const PairLaw& law, double damping, 
     double t[3];
     for (int a = 0; a < 3; ++a) {
       xi[a] -= along * n[a];
-      t[a] = -(law.tangential_stiffness * xi[a] + 0.5 * damping * slip[a]);
+      t[a] = -(law[LawColumn::tangential] * xi[a] + 0.5 * damping * slip[a]);
     }
-    const double limit = law.friction * std::abs(normal_force);
+    const double limit = law[LawColumn::friction] * std::abs(normal_force);
     const double square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
     if (square > limit * limit) {
       const double share = limit / std::sqrt(square);
       for (int a = 0; a < 3; ++a) {
         t[a] *= share;
-        xi[a] = -(t[a] + 0.5 * damping * slip[a]) / law.tangential_stiffness;
+        xi[a] = -(t[a] + 0.5 * damping * slip[a]) / law[LawColumn::tangential];
       }
     }
     for (int a = 0; a < 3; ++a) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem_server/backends/native/step_limit.hpp"
 #include "dem_server/backends/native/sub_step.hpp"
 #include "dem_server/backends/particle_rows.hpp"
 #include "proto/base/errors.hpp"
@@ -92,6 +93,12 @@ NativeEngine::NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState i
   const auto is = [this](SideKind kind) {
     return std::find(domain_.sides.begin(), domain_.sides.end(), kind) != domain_.sides.end();
   };
+  const ContactModel& model = laws_.model();
+  if (model.law != ContactLaw::linear || model.rolling != RollingLaw::none ||
+      model.cohesion != CohesionLaw::none) {
+    throw ConfigError(
+        "particles.contact: the native engine follows law: linear without rolling and cohesion");
+  }
   any_periodic_ = is(SideKind::periodic);
   any_wall_ = is(SideKind::wall);
   size_up();
@@ -150,14 +157,7 @@ void NativeEngine::load_rows() {
 }
 
 void NativeEngine::check_step(double time_step) const {
-  // A window cut into equal parts may miss the limit by a rounding error.
-  if (time_step <= limit_.longest * (1 + 1e-9)) return;
-  throw ConfigError(
-      "particles.time_step: a sub-step of {:.4g} s is longer than a tenth of the contact time of "
-      "{}, "
-      "{:.4g} s; set it to at most {:.4g} s (recommended: {:.2g} s, a twentieth), or soften the "
-      "contact",
-      time_step, limit_.pair, 10 * limit_.longest, limit_.longest, 0.5 * limit_.longest);
+  check_time_step(limit_, time_step);
 }
 
 void NativeEngine::set_drive(std::span<const Vector3> force) {

@@ -54,6 +54,8 @@ void check_pair_keys(const std::string& path, const PairSettings& pair,
        "rolling: spring_dashpot", ""},
       {"cohesion_energy_density", pair.cohesion_energy_density.has_value(), sticks, true,
        "cohesion: sjkr", "1e4 J/m3"},
+      {"work_of_adhesion", pair.work_of_adhesion.has_value(), contact.cohesion == CohesionLaw::jkr,
+       true, "cohesion: jkr", "0.05 J/m2"},
       {"liquid_volume", pair.liquid_volume.has_value(), wet, true, bridge, "0.01 mm3"},
       {"surface_tension", pair.surface_tension.has_value(), wet, true, bridge, "0.072"},
       {"contact_angle", pair.contact_angle.has_value(), wet, true, bridge, "0"},
@@ -70,6 +72,12 @@ void check_contact_laws(const Scene& scene, Findings& findings) {
     if (!findings.sound(path)) return;
   }
   const bool is_hertz = contact.law == ContactLaw::hertz;
+  if (contact.cohesion == CohesionLaw::jkr && !is_hertz) {
+    findings.add("particles.contact.cohesion",
+                 "`jkr` is the adhesion of elastic spheres and has no meaning without "
+                 "particles.contact.law: hertz; use that, or `sjkr`");
+    return;
+  }
   for (const auto& [name, material] : scene.particles.materials) {
     const std::string path = "particles.materials." + name;
     check_key(

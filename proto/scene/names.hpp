@@ -137,6 +137,7 @@ template <>
 inline constexpr auto enum_names<CohesionLaw> = std::to_array<Named<CohesionLaw>>({
     {CohesionLaw::none, "none"},
     {CohesionLaw::sjkr, "sjkr"},
+    {CohesionLaw::jkr, "jkr"},
     {CohesionLaw::liquid_bridge, "liquid_bridge"},
 });
 template <>

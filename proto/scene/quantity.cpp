@@ -44,6 +44,8 @@ constexpr auto suffixes = std::to_array<Suffix>({
     {"J/(kg.K)", Dimension::heat_capacity, 0},
     {"J/m3", Dimension::energy_density, 0},
     {"kJ/m3", Dimension::energy_density, 3},
+    {"J/m2", Dimension::surface_energy, 0},
+    {"mJ/m2", Dimension::surface_energy, -3},
     {"m3", Dimension::volume, 0},
     {"cm3", Dimension::volume, -6},
     {"mm3", Dimension::volume, -9},

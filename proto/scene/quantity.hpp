@@ -23,6 +23,7 @@ enum class Dimension {
   conductivity,
   heat_capacity,
   energy_density,
+  surface_energy,
   volume,
   angle,
 };

@@ -248,7 +248,7 @@ struct FluidSettings {
 enum class ParticleBackend { native, kinematic };
 enum class ContactLaw { linear, hertz };
 enum class RollingLaw { none, constant_torque, spring_dashpot };
-enum class CohesionLaw { none, sjkr, liquid_bridge };
+enum class CohesionLaw { none, sjkr, jkr, liquid_bridge };
 
 struct MaterialSettings {
   double density = 0;                    ///< [kg/m³]
@@ -272,6 +272,7 @@ struct PairSettings {
   std::optional<double> rolling_friction;      ///< [-] with a rolling law
   std::optional<double> rolling_damping;  ///< [-] spring_dashpot: share of critical; default 0.3
   std::optional<double> cohesion_energy_density;  ///< [J/m³] sjkr
+  std::optional<double> work_of_adhesion;         ///< [J/m²] jkr
   std::optional<double> liquid_volume;            ///< [m³] liquid_bridge
   std::optional<double> surface_tension;          ///< [N/m] liquid_bridge
   std::optional<double> contact_angle;            ///< [rad] liquid_bridge

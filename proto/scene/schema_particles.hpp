@@ -73,6 +73,14 @@ void describe_rolling_and_cohesion(Visit& visit, PairSettings& pair) {
          .only_with = "contact.cohesion: sjkr",
          .meaning = "Attraction over the area of contact."},
         pair.cohesion_energy_density);
+  visit(
+      {.name = "work_of_adhesion",
+       .dimension = Dimension::surface_energy,
+       .range = not_negative,
+       .otherwise = "**required** with jkr",
+       .only_with = "contact.cohesion: jkr",
+       .meaning = "To part the two surfaces, per area: twice the surface energy of equal solids."},
+      pair.work_of_adhesion);
   visit({.name = "liquid_volume",
          .dimension = Dimension::volume,
          .range = not_negative,
@@ -137,8 +145,11 @@ void describe(Visit& visit, ContactSettings& contact) {
                     "`spring_dashpot` C, which also holds particles at rest."},
         contact.rolling);
   visit({.name = "cohesion",
-         .meaning = "Attraction: `sjkr` in proportion to the area of contact; `liquid_bridge` "
-                    "forms on contact and holds up to its rupture (Willett et al. 2000)."},
+         .meaning =
+             "Attraction: `sjkr` in proportion to the area of contact; `jkr` (with `law: hertz`) "
+             "of adhesive elastic spheres (Johnson, Kendall and Roberts 1971); "
+             "`liquid_bridge` forms on contact and holds up to its rupture (Willett et al. "
+             "2000)."},
         contact.cohesion);
   visit({.name = "walls",
          .otherwise = "not set; required with hertz and pairs with `walls`",

@@ -12,6 +12,7 @@
 #endif
 
 #include "dem_server/backends/native/contact_law.hpp"
+#include "hwy/contrib/math/math-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,7 +32,7 @@ struct TouchLanes {
   Lanes3<V> velocity;     ///< [m/s] of the particle's centre relative to the partner's
   Lanes3<V> radius_spin;  ///< [m/s] Σ radius × spin rate over both; a wall has none. With friction
   Lanes3<V> spin;         ///< [rad/s] relative to the partner's; only with a rolling law
-  V inverse_mass;         ///< [1/kg] Σ 1/m; a wall has 0
+  V root_mass;            ///< [sqrt(kg)] sqrt(m*), 1/m* = Σ 1/m; a wall has 0
   V inverse_radius;       ///< [1/m] Σ 1/r; a wall has 0
   V inverse_inertia;      ///< [1/(kg m²)] Σ 1/(m r²); a wall has 0. Only with a rolling law
 };
@@ -40,7 +41,7 @@ struct TouchLanes {
 /// use are zero.
 template <class V>
 struct LawLanes {
-  V normal, tangential, damping, tangential_damping, friction;
+  V normal, tangential, tangential_softness, damping, tangential_damping, friction;
   V rolling_friction, rolling_stiffness, rolling_damping;
   V attraction, bridge_shape, bridge_rupture;
 };
@@ -51,7 +52,7 @@ template <class V>
 struct SpringLanes {
   Lanes3<V> tangential;  ///< [m] with friction
   Lanes3<V> rolling;     ///< [rad] spring_dashpot
-  V bridge;              ///< liquid_bridge: 1 where one stands, else 0
+  V bridge;              ///< liquid_bridge, jkr: 1 where the contact holds, else 0
 };
 
 template <class V>
@@ -70,11 +71,12 @@ struct ForceLanes {
 template <class D, class Load>
 HWY_INLINE LawLanes<hn::Vec<D>> load_columns(D d, const ContactModel& model, const Load& load) {
   const auto zero = hn::Zero(d);
-  LawLanes<hn::Vec<D>> law{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+  LawLanes<hn::Vec<D>> law{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
   law.normal = load(LawColumn::normal);
   law.damping = load(LawColumn::damping);
   if (model.friction) {
     law.tangential = load(LawColumn::tangential);
+    law.tangential_softness = load(LawColumn::tangential_softness);
     law.tangential_damping = load(LawColumn::tangential_damping);
     law.friction = load(LawColumn::friction);
   }
@@ -156,10 +158,11 @@ HWY_INLINE Lanes3<V> select(M which, const Lanes3<V>& yes, const Lanes3<V>& no) 
 // ---- springs and dashpots of the contact as it is
 // ----------------------------------------------------
 
-/// F_n = k δ − c v_n, and across it −(k_t ξ + c_t v_t).
+/// F_n = elastic − c v_n, and across it −(k_t ξ + c_t v_t).
 template <class V>
 struct StiffnessLanes {
-  V normal;              ///< [N/m] elastic normal force over overlap
+  V elastic;             ///< [N] normal force without the dashpot
+  V normal;              ///< [N/m] that force over the overlap, without adhesion
   V tangential;          ///< [N/m]
   V damping;             ///< [kg/s]
   V tangential_damping;  ///< [kg/s]
@@ -169,10 +172,29 @@ struct StiffnessLanes {
 /// Springs and dashpots of constant stiffness (Cundall & Strack, Géotechnique 29, 1979, 47-65):
 ///   k_n, k_t given,  c = 2 ζ sqrt(k_n m*),  c_t = c/2
 template <bool friction, class D, class V>
-HWY_INLINE StiffnessLanes<V> linear_stiffness(D d, const LawLanes<V>& law, V inverse_mass) {
-  const V damping = hn::Div(law.damping, hn::Sqrt(inverse_mass));
+HWY_INLINE StiffnessLanes<V> linear_stiffness(D d, const LawLanes<V>& law, V root_mass, V overlap) {
+  const V damping = hn::Mul(law.damping, root_mass);
   const V tangential_damping = hn::Mul(law.tangential_damping, damping);
-  return {law.normal, law.tangential, damping, tangential_damping, hn::Zero(d)};
+  return {hn::Mul(law.normal, overlap), law.normal, law.tangential, damping,
+          tangential_damping,           hn::Zero(d)};
+}
+
+/// What elastic spheres have at the contact radius a: normal, tangential and the dashpots.
+template <bool friction, class D, class V>
+HWY_INLINE StiffnessLanes<V> stiffness_of(D d, const LawLanes<V>& law, const TouchLanes<V>& touch,
+                                          V radius) {
+  using T = hn::TFromD<D>;
+  const V zero = hn::Zero(d);
+  const V slope = hn::Mul(law.normal, radius);
+  const V normal = hn::Mul(hn::Set(d, static_cast<T>(2.0 / 3.0)), slope);
+  const V damping = hn::Mul(law.damping, hn::Mul(hn::Sqrt(slope), touch.root_mass));
+  if constexpr (!friction) return {zero, normal, zero, damping, zero, zero};
+  return {zero,
+          normal,
+          hn::Mul(law.tangential, radius),
+          damping,
+          hn::Mul(law.tangential_damping, damping),
+          zero};
 }
 
 /// Elastic spheres, with the contact radius a = sqrt(R* δ):
@@ -189,16 +211,91 @@ template <bool friction, class D, class V>
 HWY_INLINE StiffnessLanes<V> hertz_stiffness(D d, const LawLanes<V>& law,
                                              const TouchLanes<V>& touch, V overlap,
                                              V normal_velocity, V time_step) {
-  using T = hn::TFromD<D>;
   const V radius = hn::Sqrt(hn::Div(overlap, touch.inverse_radius));
-  const V slope = hn::Mul(law.normal, radius);
-  const V normal = hn::Mul(hn::Set(d, static_cast<T>(2.0 / 3.0)), slope);
-  const V damping = hn::Mul(law.damping, hn::Sqrt(hn::Div(slope, touch.inverse_mass)));
-  if constexpr (!friction) return {normal, hn::Zero(d), damping, hn::Zero(d), hn::Zero(d)};
-  const V before = hn::Max(hn::Zero(d), hn::MulAdd(normal_velocity, time_step, overlap));
-  const V kept = hn::Sqrt(hn::Div(hn::Min(before, overlap), overlap));
-  return {normal, hn::Mul(law.tangential, radius), damping,
-          hn::Mul(law.tangential_damping, damping), kept};
+  StiffnessLanes<V> stiffness = stiffness_of<friction>(d, law, touch, radius);
+  stiffness.elastic = hn::Mul(stiffness.normal, overlap);
+  if constexpr (friction) {
+    const V before = hn::Max(hn::Zero(d), hn::MulAdd(normal_velocity, time_step, overlap));
+    stiffness.spring_kept = hn::Sqrt(hn::Div(hn::Min(before, overlap), overlap));
+  }
+  return stiffness;
+}
+
+// ---- adhesion of elastic spheres
+// ----------------------------------------------------------------------------
+
+/// The smallest contact radius a_c = (π w R*² / 8 E*)^(1/3) [m], at which the surfaces part.
+template <class D, class V>
+HWY_INLINE V jkr_smallest(D d, const LawLanes<V>& law, V inverse_radius) {
+  using T = hn::TFromD<D>;
+  const V power = hn::Mul(hn::Set(d, static_cast<T>(-2.0 / 3.0)), hn::Log(d, inverse_radius));
+  return hn::Mul(law.attraction, hn::Exp(d, power));
+}
+
+/// Where an adhesive contact holds: from δ = 0 on, until δ falls below −3 a_c²/R*.
+template <class D, class V, class M>
+HWY_INLINE M jkr_holds(D d, const TouchLanes<V>& touch, V smallest, M near, M contact, V held) {
+  const V parted = hn::Mul(hn::Set(d, hn::TFromD<D>{-3}),
+                           hn::Mul(touch.inverse_radius, hn::Mul(smallest, smallest)));
+  return hn::Or(contact,
+                hn::And(near, hn::And(hn::Gt(held, hn::Zero(d)), hn::Gt(touch.overlap, parted))));
+}
+
+/// The contact radius a, from δ = a²/R* − sqrt(2π w a/E*). With a = a_c y² that is y⁴ − 4 y = D,
+/// D = δ R*/a_c² ≥ −3, and y ≥ 1 follows from the root t ≤ 4 of t³ + 4 D t = 16 (Ferrari), to which
+/// Newton's method descends from t = 4: six steps to the last bit of a double, from D = −3 to
+/// infinity. sqrt(R* δ) where a_c = 0.
+template <class D, class V>
+HWY_INLINE V jkr_radius(D d, V overlap, V smallest, V inverse_radius) {
+  using T = hn::TFromD<D>;
+  const V area = hn::Div(overlap, inverse_radius);  // of Hertz' law, over π
+  const V depth = hn::Mul(hn::Set(d, T{4}), hn::Div(area, hn::Mul(smallest, smallest)));
+  V t = hn::Set(d, T{4});
+  for (int step = 0; step < 6; ++step) {
+    const V square = hn::Mul(t, t);
+    t = hn::Div(hn::MulAdd(hn::Add(t, t), square, hn::Set(d, T{16})),
+                hn::MulAdd(hn::Set(d, T{3}), square, depth));
+  }
+  const V root = hn::Sqrt(t);
+  const V rest = hn::Max(hn::Zero(d), hn::Sub(hn::Div(hn::Set(d, T{8}), root), t));
+  const V y = hn::Mul(hn::Set(d, static_cast<T>(0.5)), hn::Add(root, hn::Sqrt(rest)));
+  const V adhesive = hn::Mul(smallest, hn::Mul(y, y));
+  return hn::IfThenElse(hn::Gt(smallest, hn::Zero(d)), adhesive,
+                        hn::Sqrt(hn::Max(hn::Zero(d), area)));
+}
+
+/// Hertz' law with adhesion of the work w per area (Johnson, Kendall & Roberts, Proc. R. Soc. A
+/// 324, 1971, 301):
+///   F = 4 E* a³/(3 R*) − sqrt(8π w E* a³) − c v_n
+/// with the stiffnesses and dashpots of Hertz' law at this a. The largest pull is 3/2 π w R*.
+template <bool friction, class D, class V>
+HWY_INLINE StiffnessLanes<V> jkr_stiffness(D d, const LawLanes<V>& law, const TouchLanes<V>& touch,
+                                           V overlap, V smallest, V normal_velocity, V time_step) {
+  using T = hn::TFromD<D>;
+  const V radius = jkr_radius(d, overlap, smallest, touch.inverse_radius);
+  StiffnessLanes<V> stiffness = stiffness_of<friction>(d, law, touch, radius);
+  // 2/3 (2 E*)/R* (a³ − 6 (a a_c)^(3/2))
+  const V mixed = hn::Mul(radius, smallest);
+  const V pulled = hn::Mul(hn::Set(d, T{-6}), hn::Mul(mixed, hn::Sqrt(mixed)));
+  const V cube = hn::MulAdd(hn::Mul(radius, radius), radius, pulled);
+  stiffness.elastic = hn::Mul(hn::Mul(hn::Set(d, static_cast<T>(2.0 / 3.0)), law.normal),
+                              hn::Mul(touch.inverse_radius, cube));
+  if constexpr (friction) {
+    const V before = hn::MulAdd(normal_velocity, time_step, overlap);
+    const V least =
+        hn::Mul(hn::Set(d, T{-3}), hn::Mul(touch.inverse_radius, hn::Mul(smallest, smallest)));
+    const V old = jkr_radius(d, hn::Max(before, least), smallest, touch.inverse_radius);
+    stiffness.spring_kept = hn::Div(hn::Min(old, radius), radius);
+  }
+  return stiffness;
+}
+
+/// What an adhesive contact adds to the normal force in the limits of friction and rolling: twice
+/// the largest pull, 3π w R* (Thornton, J. Phys. D 24, 1991, 1942).
+template <class D, class V>
+HWY_INLINE V jkr_pressure(D d, const LawLanes<V>& law, V smallest, V inverse_radius) {
+  const V cube = hn::Mul(smallest, hn::Mul(smallest, smallest));
+  return hn::Mul(hn::Mul(hn::Set(d, hn::TFromD<D>{12}), law.normal), hn::Mul(inverse_radius, cube));
 }
 
 // ---- friction
@@ -209,11 +306,12 @@ HWY_INLINE StiffnessLanes<V> hertz_stiffness(D d, const LawLanes<V>& law,
 /// Rev. E 64, 2001, 051302):
 ///   ξ += v_t dt, kept tangential;   F_t = −(k_t ξ + c_t v_t),   |F_t| ≤ μ |F_n|
 /// The lever arms are the radii: v_t = v − v_n n − (r_i ω_i + r_j ω_j) × n. F_n is the force of
-/// spring and dashpot: an attraction beside it presses the surfaces together and so adds to it.
+/// spring and dashpot, `pressing` its size: an attraction beside it presses the surfaces together
+/// and so adds to it.
 template <class D, class V, class M>
 HWY_INLINE Lanes3<V> friction_force(D d, const ContactModel& model, const LawLanes<V>& law,
                                     const StiffnessLanes<V>& stiffness, const TouchLanes<V>& touch,
-                                    V normal_velocity, V normal_force, V time_step, M contact,
+                                    V normal_velocity, V pressing, V time_step, M contact,
                                     Lanes3<V>& spring) {
   const Lanes3<V>& n = touch.normal;
   const Lanes3<V> rim = cross(touch.radius_spin, n);
@@ -225,12 +323,15 @@ HWY_INLINE Lanes3<V> friction_force(D d, const ContactModel& model, const LawLan
   xi = minus_scaled(xi, dot(xi, n), n);
   const V drag = hn::Neg(stiffness.tangential_damping);
   Lanes3<V> force = minus_scaled(scaled(slip, drag), stiffness.tangential, xi);
-  const V limit = hn::Mul(law.friction, hn::Abs(normal_force));
+  const V limit = hn::Mul(law.friction, pressing);
   const V square = dot(force, force);
   const M slides = hn::And(contact, hn::Gt(square, hn::Mul(limit, limit)));
   if (!hn::AllFalse(d, slides)) {
     const Lanes3<V> most = scaled(force, hn::Div(limit, hn::Sqrt(square)));
-    const V softness = hn::Div(hn::Set(d, hn::TFromD<D>{-1}), stiffness.tangential);
+    V softness = hn::Neg(law.tangential_softness);
+    if (model.law == ContactLaw::hertz) {
+      softness = hn::Div(hn::Set(d, hn::TFromD<D>{-1}), stiffness.tangential);
+    }
     const Lanes3<V> elastic = plus_scaled(most, stiffness.tangential_damping, slip);
     force = select(slides, most, force);
     xi = select(slides, scaled(elastic, softness), xi);
@@ -255,12 +356,11 @@ HWY_INLINE Lanes3<V> friction_force(D d, const ContactModel& model, const LawLan
 template <class D, class V, class M>
 HWY_INLINE Lanes3<V> rolling_torque(D d, const ContactModel& model, const LawLanes<V>& law,
                                     const StiffnessLanes<V>& stiffness, const TouchLanes<V>& touch,
-                                    V normal_force, V time_step, M contact, Lanes3<V>& spring) {
+                                    V pressing, V time_step, M contact, Lanes3<V>& spring) {
   using T = hn::TFromD<D>;
   const Lanes3<V>& n = touch.normal;
   const Lanes3<V> spin = minus_scaled(touch.spin, dot(touch.spin, n), n);
-  const V limit =
-      hn::Div(hn::Mul(law.rolling_friction, hn::Abs(normal_force)), touch.inverse_radius);
+  const V limit = hn::Div(hn::Mul(law.rolling_friction, pressing), touch.inverse_radius);
   if (model.rolling == RollingLaw::constant_torque) {
     const V square = dot(spin, spin);
     const V stopping =
@@ -325,7 +425,7 @@ HWY_INLINE V attraction(D d, const ContactModel& model, const LawLanes<V>& law,
 // ----------------------------------------------------------------------------------------
 
 /// Force, lever and rolling torque of a contact in each lane of `near`; all zero, and the springs
-/// too, where the surfaces are apart (with liquid bridges: and no bridge holds) or the lane is not
+/// too, where the surfaces are apart (and no bridge or adhesion holds them) or the lane is not
 /// `near`, whatever its other values are. `near` may hold any lane whose surfaces come closer than
 /// reach_beyond_contact. `friction` is model.friction. `time_step` [s] is what the springs advance
 /// by: the time over which the positions have moved with `touch.velocity`.
@@ -333,31 +433,43 @@ template <bool friction, class D, class V = hn::Vec<D>, class M = hn::Mask<D>>
 HWY_INLINE void contact_force(D d, const ContactModel& model, const LawLanes<V>& law,
                               const TouchLanes<V>& touch, V time_step, SpringLanes<V>& spring,
                               M near, ForceLanes<V>& out) {
-  const M contact = hn::And(near, hn::Gt(touch.overlap, hn::Zero(d)));
-  const V overlap = hn::IfThenElseZero(contact, touch.overlap);
+  M contact = hn::And(near, hn::Gt(touch.overlap, hn::Zero(d)));
   const V normal_velocity = dot(touch.velocity, touch.normal);
-  const StiffnessLanes<V> stiffness =
-      model.law == ContactLaw::linear
-          ? linear_stiffness<friction>(d, law, touch.inverse_mass)
-          : hertz_stiffness<friction>(d, law, touch, overlap, normal_velocity, time_step);
-  const V normal_force =
-      hn::NegMulAdd(stiffness.damping, normal_velocity, hn::Mul(stiffness.normal, overlap));
+  StiffnessLanes<V> stiffness;
+  V adhesion = hn::Zero(d);
+  if (model.law == ContactLaw::linear) {
+    const V overlap = hn::IfThenElseZero(contact, touch.overlap);
+    stiffness = linear_stiffness<friction>(d, law, touch.root_mass, overlap);
+  } else if (model.cohesion != CohesionLaw::jkr) {
+    const V overlap = hn::IfThenElseZero(contact, touch.overlap);
+    stiffness = hertz_stiffness<friction>(d, law, touch, overlap, normal_velocity, time_step);
+  } else {
+    const V smallest = jkr_smallest(d, law, touch.inverse_radius);
+    contact = jkr_holds(d, touch, smallest, near, contact, spring.bridge);
+    spring.bridge = hn::IfThenElseZero(contact, hn::Set(d, hn::TFromD<D>{1}));
+    const V overlap = hn::IfThenElseZero(contact, touch.overlap);
+    stiffness =
+        jkr_stiffness<friction>(d, law, touch, overlap, smallest, normal_velocity, time_step);
+    adhesion = jkr_pressure(d, law, smallest, touch.inverse_radius);
+  }
+  const V normal_force = hn::NegMulAdd(stiffness.damping, normal_velocity, stiffness.elastic);
   V along = normal_force;
   M acts = contact;
-  if (model.cohesion != CohesionLaw::none) {
+  if (model.cohesion == CohesionLaw::sjkr || model.cohesion == CohesionLaw::liquid_bridge) {
     const V pull = attraction(d, model, law, touch, near, contact, spring.bridge);
     along = hn::Sub(hn::IfThenElseZero(contact, normal_force), pull);
     acts = near;
   }
   out.force = or_zero(acts, scaled(touch.normal, along));
   if constexpr (friction) {
+    const V pressing = hn::Abs(hn::Add(normal_force, adhesion));
     const Lanes3<V> across = friction_force(d, model, law, stiffness, touch, normal_velocity,
-                                            normal_force, time_step, contact, spring.tangential);
+                                            pressing, time_step, contact, spring.tangential);
     out.force = {hn::Add(out.force.x, across.x), hn::Add(out.force.y, across.y),
                  hn::Add(out.force.z, across.z)};
     out.lever = or_zero(contact, cross(across, touch.normal));
     if (model.rolling != RollingLaw::none) {
-      out.torque = rolling_torque(d, model, law, stiffness, touch, normal_force, time_step, contact,
+      out.torque = rolling_torque(d, model, law, stiffness, touch, pressing, time_step, contact,
                                   spring.rolling);
     }
   }

@@ -64,6 +64,7 @@ void set_linear(const PairCheck& check, PairLaw& law) {
   check.range("tangential_stiffness", tangential, tangential > 0, "positive [N/m]");
   law[LawColumn::normal] = normal;
   law[LawColumn::tangential] = tangential;
+  law[LawColumn::tangential_softness] = 1 / tangential;
   law[LawColumn::damping] = 2 * damping_ratio(check.pair.restitution) * std::sqrt(normal);
   law[LawColumn::tangential_damping] = 0.5;
 }
@@ -91,6 +92,9 @@ void set_cohesion(const PairCheck& check, CohesionLaw cohesion, PairLaw& law) {
   if (cohesion == CohesionLaw::sjkr) {
     law[LawColumn::attraction] =
         2 * pi * check.not_negative("cohesion_energy_density", check.pair.cohesion_energy_density);
+  } else if (cohesion == CohesionLaw::jkr) {
+    const double work = check.not_negative("work_of_adhesion", check.pair.work_of_adhesion);
+    law[LawColumn::attraction] = std::cbrt(pi * work / (4 * law[LawColumn::normal]));
   } else if (cohesion == CohesionLaw::liquid_bridge) {
     const double volume = check.not_negative("liquid_volume", check.pair.liquid_volume);
     const double tension = check.not_negative("surface_tension", check.pair.surface_tension);
@@ -133,6 +137,11 @@ std::vector<Elasticity> elasticities(const ParticleSettings& settings) {
   return all;
 }
 
+/// True if a contact may hold beyond δ = 0, so that it must remember whether it does.
+bool outlasts_touch(CohesionLaw cohesion) {
+  return cohesion == CohesionLaw::liquid_bridge || cohesion == CohesionLaw::jkr;
+}
+
 }  // namespace
 
 double sphere_mass(double radius, double density) {
@@ -151,7 +160,7 @@ double damping_coefficient(const PairLaw& law, double effective_mass) {
 
 int spring_numbers(const ContactModel& model) {
   return (model.friction ? 3 : 0) + (model.rolling == RollingLaw::spring_dashpot ? 3 : 0) +
-         (model.cohesion == CohesionLaw::liquid_bridge ? 1 : 0);
+         (outlasts_touch(model.cohesion) ? 1 : 0);
 }
 
 ContactLaws::ContactLaws(const ParticleSettings& settings) {
@@ -159,6 +168,9 @@ ContactLaws::ContactLaws(const ParticleSettings& settings) {
   for (const auto& [name, material] : settings.materials) names_.push_back(name);
   names_.emplace_back("walls");
   laws_.resize(names_.size() * names_.size());
+  if (contact.cohesion == CohesionLaw::jkr && contact.law != ContactLaw::hertz) {
+    throw ConfigError("particles.contact.cohesion: jkr needs particles.contact.law: hertz");
+  }
   model_ = {contact.law, contact.rolling, contact.cohesion, contact.rolling != RollingLaw::none};
   const std::vector<Elasticity> elastic = elasticities(settings);
   for (const Elasticity& one : elastic) {
@@ -205,10 +217,16 @@ int ContactLaws::find(const std::string& name) const {
   return static_cast<int>(found - names_.begin());
 }
 
-double reach_beyond_contact(const ContactLaws& laws) {
+double reach_beyond_contact(const ContactLaws& laws, double largest_radius) {
   double reach = 0;
   for (int pair = 0; pair < laws.count(); ++pair) {
-    reach = std::max(reach, laws[pair][LawColumn::bridge_rupture]);
+    const PairLaw& law = laws[pair];
+    reach = std::max(reach, law[LawColumn::bridge_rupture]);
+    if (laws.model().cohesion == CohesionLaw::jkr) {
+      // 3 a_c²/R*, which grows with R*; that of a contact with a wall is the radius.
+      const double factor = law[LawColumn::attraction];
+      reach = std::max(reach, 3 * factor * factor * std::cbrt(largest_radius));
+    }
   }
   return reach;
 }

@@ -21,21 +21,23 @@ struct ContactModel {
 
 /// Numbers of memory that a contact keeps between two steps, zero when the surfaces meet anew, in
 /// this order: 3 of the tangential spring [m] (with friction), 3 of the rolling spring [rad]
-/// (spring_dashpot), 1 that tells if a bridge stands (liquid_bridge).
+/// (spring_dashpot), 1 that tells if a bridge or an adhesive contact holds (liquid_bridge, jkr).
 int spring_numbers(const ContactModel& model);
 
 /// What the force of a contact reads, one number a column; m* = m_i m_j/(m_i + m_j) and
 /// R* = r_i r_j/(r_i + r_j) belong to the two particles.
 enum class LawColumn {
-  normal,      ///< linear: k_n [N/m]; hertz: 2 E* [Pa]
-  tangential,  ///< linear: k_t [N/m]; hertz: 8 G* [Pa]
-  damping,     ///< c_n = damping sqrt(S m*), S = 1 (linear, [sqrt(N/m)]) or 2 E* a (hertz, [-])
+  normal,               ///< linear: k_n [N/m]; hertz: 2 E* [Pa]
+  tangential,           ///< linear: k_t [N/m]; hertz: 8 G* [Pa]
+  tangential_softness,  ///< linear: 1/k_t [m/N]
+  damping,  ///< c_n = damping sqrt(S m*), S = 1 (linear, [sqrt(N/m)]) or 2 E* a (hertz, [-])
   tangential_damping,  ///< c_t / c_n [-]
   friction,            ///< [-]
   rolling_friction,    ///< largest torque over force and R* [-]
   rolling_stiffness,   ///< of the rolling spring over normal stiffness and R*² [-]
   rolling_damping,     ///< share of critical damping [-]
-  attraction,  ///< sjkr: 2 π times the energy density [J/m³]; liquid_bridge: 4 π γ cos θ [N/m]
+  attraction,  ///< sjkr: 2 π times the energy density [J/m³]; liquid_bridge: 4 π γ cos θ [N/m];
+               ///< jkr: (π w / 8 E*)^(1/3) [m^(1/3)]
   bridge_shape,    ///< liquid_bridge: 2 / V [1/m³]
   bridge_rupture,  ///< liquid_bridge: distance of the surfaces at which it breaks [m]; 0: dry
 };
@@ -87,8 +89,8 @@ class ContactLaws {
 };
 
 /// How far [m] beyond touching surfaces a contact acts: what a list of neighbours adds to its
-/// cutoff. 0 without liquid bridges.
-double reach_beyond_contact(const ContactLaws& laws);
+/// cutoff, for particles up to `largest_radius` [m]. 0 without liquid bridges and jkr.
+double reach_beyond_contact(const ContactLaws& laws, double largest_radius);
 
 /// All pairs as one table of plain numbers, T = float or double: column by column, in a column the
 /// pairs by ContactLaws::index. Pairs without an entry are zero.

@@ -98,8 +98,8 @@ const double rupture = (1 + 0.5 * angle) * std::cbrt(volume);
 TEST(LiquidBridge, forms_on_contact_and_holds_up_to_its_rupture) {
   const ContactLaws laws(wet());
   const auto table = law_table<double>(laws);
-  EXPECT_DOUBLE_EQ(reach_beyond_contact(laws), rupture);
-  EXPECT_EQ(reach_beyond_contact(ContactLaws(two_pairs())), 0);
+  EXPECT_DOUBLE_EQ(reach_beyond_contact(laws, r2), rupture);
+  EXPECT_EQ(reach_beyond_contact(ContactLaws(two_pairs()), r2), 0);
   Springs springs;
   const auto force = [&](double overlap) {
     const Pushed pushed = push(table, 0, touching(overlap), springs, 1e-6);

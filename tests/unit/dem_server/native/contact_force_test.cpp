@@ -146,13 +146,15 @@ std::vector<ParticleSettings> all_laws() {
     for (const RollingLaw rolling :
          {RollingLaw::none, RollingLaw::constant_torque, RollingLaw::spring_dashpot}) {
       for (const CohesionLaw cohesion :
-           {CohesionLaw::none, CohesionLaw::sjkr, CohesionLaw::liquid_bridge}) {
+           {CohesionLaw::none, CohesionLaw::sjkr, CohesionLaw::jkr, CohesionLaw::liquid_bridge}) {
+        if (cohesion == CohesionLaw::jkr && law != ContactLaw::hertz) continue;
         ParticleSettings settings = law == ContactLaw::linear ? two_pairs() : elastic(5e6, 0.3);
         settings.contact.rolling = rolling;
         settings.contact.cohesion = cohesion;
         all.push_back(with(settings, [&](PairSettings& pair) {
           if (rolling != RollingLaw::none) pair.rolling_friction = 0.1;
           if (cohesion == CohesionLaw::sjkr) pair.cohesion_energy_density = 1e4;
+          if (cohesion == CohesionLaw::jkr) pair.work_of_adhesion = 1e-3;
           if (cohesion == CohesionLaw::liquid_bridge) {
             pair.liquid_volume = 1e-12;
             pair.surface_tension = 0.07;
@@ -215,7 +217,8 @@ TEST(ContactForce, is_zero_and_forgotten_where_nothing_is_near) {
     if (laws.model().rolling == RollingLaw::spring_dashpot) {
       EXPECT_EQ(got.springs.rolling, Vector3::Zero());
     }
-    if (laws.model().cohesion == CohesionLaw::liquid_bridge) {
+    if (laws.model().cohesion == CohesionLaw::liquid_bridge ||
+        laws.model().cohesion == CohesionLaw::jkr) {
       EXPECT_EQ(got.springs.bridge, 0);
     }
     // Near, but apart: as far as forces go the same, unless a bridge stands.
@@ -258,6 +261,7 @@ TEST(ContactForce, keeps_as_many_numbers_as_its_laws_need) {
   EXPECT_EQ(spring_numbers({.rolling = RollingLaw::constant_torque, .friction = true}), 3);
   EXPECT_EQ(spring_numbers({.rolling = RollingLaw::spring_dashpot, .friction = true}), 6);
   EXPECT_EQ(spring_numbers({.cohesion = CohesionLaw::liquid_bridge}), 1);
+  EXPECT_EQ(spring_numbers({.cohesion = CohesionLaw::jkr}), 1);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ Rows random_rows(int pairs) {
     rows.in.push_back(uniform(-2e-6, 1e-5));                              // overlap
     for (int k = 0; k < 6; ++k) rows.in.push_back(uniform(-0.05, 0.05));  // velocity, radius spin
     rows.in.push_back(uniform(-50, 50));                                  // spin
-    rows.in.push_back(1 / uniform(1e-6, 1e-5));
+    rows.in.push_back(std::sqrt(uniform(1e-6, 1e-5)));
     rows.in.push_back(1 / uniform(2e-4, 2e-3));
     rows.in.push_back(1 / uniform(1e-12, 1e-11));
     for (int k = 0; k < 3; ++k) rows.spring.push_back(uniform(-5e-6, 5e-6));
@@ -139,6 +139,7 @@ ParticleSettings settings_with(ContactLaw law, RollingLaw rolling, CohesionLaw c
       pair.friction = 0.1 * (i + j);
       if (rolling != RollingLaw::none) pair.rolling_friction = 0.05 * (1 + j);
       if (cohesion == CohesionLaw::sjkr) pair.cohesion_energy_density = 1e3 * (1 + i);
+      if (cohesion == CohesionLaw::jkr) pair.work_of_adhesion = 1e-3 * j;
       if (cohesion == CohesionLaw::liquid_bridge) {
         pair.liquid_volume = 1e-15 * j;
         pair.surface_tension = 0.07;
@@ -180,7 +181,8 @@ TEST(ContactTargets, agree_to_rounding) {
     for (const RollingLaw rolling :
          {RollingLaw::none, RollingLaw::constant_torque, RollingLaw::spring_dashpot}) {
       for (const CohesionLaw cohesion :
-           {CohesionLaw::none, CohesionLaw::sjkr, CohesionLaw::liquid_bridge}) {
+           {CohesionLaw::none, CohesionLaw::sjkr, CohesionLaw::jkr, CohesionLaw::liquid_bridge}) {
+        if (cohesion == CohesionLaw::jkr && law != ContactLaw::hertz) continue;
         compare(settings_with(law, rolling, cohesion));
       }
     }

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -97,7 +97,7 @@ Pushed push(const LawTable<T>& table, int pair, const Touch& touch, const Spring
   const auto set = [&](double value) HWY_ATTR { return hn::Set(d, static_cast<T>(value)); };
   const TouchLanes<V> lanes{all_lanes(d, touch.normal),   set(touch.overlap),
                             all_lanes(d, touch.velocity), all_lanes(d, touch.radius_spin),
-                            all_lanes(d, touch.spin),     set(touch.inverse_mass),
+                            all_lanes(d, touch.spin),     set(std::sqrt(1 / touch.inverse_mass)),
                             set(touch.inverse_radius),    set(touch.inverse_inertia)};
   SpringLanes<V> spring{all_lanes(d, springs.tangential), all_lanes(d, springs.rolling),
                         set(springs.bridge)};

@@ -85,6 +85,9 @@ TEST(SceneContact, names_what_a_law_needs) {
   expect_line(hertz_scene(hertz + "    cohesion: sjkr\n", ""),
               "s.yaml:40:9: particles.contact.pairs[0].cohesion_energy_density: missing",
               {"cohesion: sjkr"});
+  expect_line(hertz_scene(hertz + "    cohesion: jkr\n", ""),
+              "s.yaml:40:9: particles.contact.pairs[0].work_of_adhesion: missing",
+              {"cohesion: jkr"});
   for (const char* key : {"liquid_volume", "surface_tension", "contact_angle"}) {
     expect_line(hertz_scene(hertz + "    cohesion: liquid_bridge\n", ""),
                 fmt::format("s.yaml:40:9: particles.contact.pairs[0].{}: missing", key),
@@ -116,6 +119,11 @@ TEST(SceneContact, names_what_has_no_meaning_with_a_law) {
   expect_line(hertz_scene(hertz, ", cohesion_energy_density: 100"),
               "particles.contact.pairs[0].cohesion_energy_density: has no meaning here",
               {"cohesion: sjkr"});
+  expect_line(hertz_scene(hertz, ", work_of_adhesion: 50 mJ/m2"),
+              "particles.contact.pairs[0].work_of_adhesion: has no meaning here",
+              {"cohesion: jkr"});
+  expect_line(with("    law: linear\n", "    law: linear\n    cohesion: jkr\n"),
+              "particles.contact.cohesion: `jkr`", {"law: hertz"});
   for (const char* key : {"liquid_volume", "surface_tension", "contact_angle"}) {
     expect_line(hertz_scene(hertz, wet),
                 fmt::format("particles.contact.pairs[0].{}: has no meaning here", key),

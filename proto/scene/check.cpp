@@ -334,6 +334,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_boundaries(scene, findings);
   check_scalars(scene, findings);
   check_pairs(scene, findings);
+  check_contact_laws(scene, findings);
   check_insertion(scene, findings);
   check_interphase(scene, findings);
   check_numerics(scene, findings);

@@ -130,6 +130,20 @@ inline constexpr auto enum_names<ParticleBackend> = std::to_array<Named<Particle
 template <>
 inline constexpr auto enum_names<ContactLaw> = std::to_array<Named<ContactLaw>>({
     {ContactLaw::linear, "linear"},
+    {ContactLaw::hertz, "hertz"},
+});
+template <>
+inline constexpr auto enum_names<RollingLaw> = std::to_array<Named<RollingLaw>>({
+    {RollingLaw::none, "none"},
+    {RollingLaw::constant_torque, "constant_torque"},
+    {RollingLaw::spring_dashpot, "spring_dashpot"},
+});
+template <>
+inline constexpr auto enum_names<CohesionLaw> = std::to_array<Named<CohesionLaw>>({
+    {CohesionLaw::none, "none"},
+    {CohesionLaw::sjkr, "sjkr"},
+    {CohesionLaw::jkr, "jkr"},
+    {CohesionLaw::liquid_bridge, "liquid_bridge"},
 });
 template <>
 inline constexpr auto enum_names<InsertionType> = std::to_array<Named<InsertionType>>({

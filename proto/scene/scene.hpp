@@ -246,22 +246,43 @@ struct FluidSettings {
 // ---- particles ----
 
 enum class ParticleBackend { native, kinematic };
-enum class ContactLaw { linear };
+enum class ContactLaw { linear, hertz };
+enum class RollingLaw { none, constant_torque, spring_dashpot };
+enum class CohesionLaw { none, sjkr, jkr, liquid_bridge };
 
 struct MaterialSettings {
-  double density = 0;  ///< [kg/m³]
+  double density = 0;                    ///< [kg/m³]
+  std::optional<double> youngs_modulus;  ///< [Pa] law hertz
+  std::optional<double> poisson_ratio;   ///< [-] law hertz
 };
 
+/// Elasticity of all walls, law hertz.
+struct WallMaterialSettings {
+  double youngs_modulus = 0;  ///< [Pa]
+  double poisson_ratio = 0;   ///< [-]
+};
+
+/// Which of the optional numbers are needed follows from `law`, `rolling` and `cohesion`.
 struct PairSettings {
   std::array<std::string, 2> between;          ///< two materials, or a material and `walls`
-  double normal_stiffness = 0;                 ///< [N/m]
-  std::optional<double> tangential_stiffness;  ///< [N/m]; default 2/7 of the normal one
+  std::optional<double> normal_stiffness;      ///< [N/m] linear
+  std::optional<double> tangential_stiffness;  ///< [N/m] linear; default 2/7 of the normal one
   double restitution = 0.9;                    ///< [-]
   double friction = 0.3;                       ///< [-]
+  std::optional<double> rolling_friction;      ///< [-] with a rolling law
+  std::optional<double> rolling_damping;  ///< [-] spring_dashpot: share of critical; default 0.3
+  std::optional<double> cohesion_energy_density;  ///< [J/m³] sjkr
+  std::optional<double> work_of_adhesion;         ///< [J/m²] jkr
+  std::optional<double> liquid_volume;            ///< [m³] liquid_bridge
+  std::optional<double> surface_tension;          ///< [N/m] liquid_bridge
+  std::optional<double> contact_angle;            ///< [rad] liquid_bridge
 };
 
 struct ContactSettings {
   ContactLaw law = ContactLaw::linear;
+  RollingLaw rolling = RollingLaw::none;
+  CohesionLaw cohesion = CohesionLaw::none;
+  std::optional<WallMaterialSettings> walls;
   std::vector<PairSettings> pairs;
 };
 

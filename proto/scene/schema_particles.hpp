@@ -2,10 +2,16 @@
 // schema.hpp.
 #pragma once
 
+#include <numbers>
+
 #include "proto/scene/key.hpp"
 #include "proto/scene/scene.hpp"
 
 namespace fluxpact {
+
+// The contact laws stand in another section than what they need: check_contact.cpp demands and
+// refuses these keys, `only_with` is for the reference.
+inline constexpr Range poisson_range{.lower = -1, .upper = 0.5, .without_lower = true};
 
 template <class Visit>
 void describe(Visit& visit, MaterialSettings& material) {
@@ -15,6 +21,87 @@ void describe(Visit& visit, MaterialSettings& material) {
          .required = true,
          .meaning = "Of the solid."},
         material.density);
+  visit({.name = "youngs_modulus",
+         .dimension = Dimension::pressure,
+         .range = positive,
+         .otherwise = "**required** with hertz",
+         .only_with = "contact.law: hertz",
+         .meaning = "Of the solid."},
+        material.youngs_modulus);
+  visit({.name = "poisson_ratio",
+         .range = poisson_range,
+         .otherwise = "**required** with hertz",
+         .only_with = "contact.law: hertz",
+         .meaning = "Of the solid."},
+        material.poisson_ratio);
+}
+
+template <class Visit>
+void describe(Visit& visit, WallMaterialSettings& walls) {
+  visit({.name = "youngs_modulus",
+         .dimension = Dimension::pressure,
+         .range = positive,
+         .required = true,
+         .meaning = "Of the walls."},
+        walls.youngs_modulus);
+  visit({.name = "poisson_ratio",
+         .range = poisson_range,
+         .required = true,
+         .meaning = "Of the walls."},
+        walls.poisson_ratio);
+}
+
+/// What adds to the spring and dashpot of a pair.
+template <class Visit>
+void describe_rolling_and_cohesion(Visit& visit, PairSettings& pair) {
+  visit({.name = "rolling_friction",
+         .range = not_negative,
+         .otherwise = "**required** with a rolling law",
+         .only_with = "contact.rolling: constant_torque | spring_dashpot",
+         .meaning = "Largest rolling torque over normal force and effective radius."},
+        pair.rolling_friction);
+  visit({.name = "rolling_damping",
+         .range = not_negative,
+         .otherwise = "0.3",
+         .only_with = "contact.rolling: spring_dashpot",
+         .meaning = "Share of critical damping of the rolling spring."},
+        pair.rolling_damping);
+  visit({.name = "cohesion_energy_density",
+         .dimension = Dimension::energy_density,
+         .range = not_negative,
+         .otherwise = "**required** with sjkr",
+         .only_with = "contact.cohesion: sjkr",
+         .meaning = "Attraction over the area of contact."},
+        pair.cohesion_energy_density);
+  visit(
+      {.name = "work_of_adhesion",
+       .dimension = Dimension::surface_energy,
+       .range = not_negative,
+       .otherwise = "**required** with jkr",
+       .only_with = "contact.cohesion: jkr",
+       .meaning = "To part the two surfaces, per area: twice the surface energy of equal solids."},
+      pair.work_of_adhesion);
+  visit({.name = "liquid_volume",
+         .dimension = Dimension::volume,
+         .range = not_negative,
+         .otherwise = "**required** with liquid_bridge",
+         .only_with = "contact.cohesion: liquid_bridge",
+         .meaning = "Of the bridge at each contact; 0: these stay dry."},
+        pair.liquid_volume);
+  visit({.name = "surface_tension",
+         .dimension = Dimension::stiffness,
+         .range = not_negative,
+         .otherwise = "**required** with liquid_bridge",
+         .only_with = "contact.cohesion: liquid_bridge",
+         .meaning = "Of the liquid."},
+        pair.surface_tension);
+  visit({.name = "contact_angle",
+         .dimension = Dimension::angle,
+         .range = {.lower = 0, .upper = std::numbers::pi / 2},
+         .otherwise = "**required** with liquid_bridge",
+         .only_with = "contact.cohesion: liquid_bridge",
+         .meaning = "Between liquid and solid, measured in the liquid."},
+        pair.contact_angle);
 }
 
 template <class Visit>
@@ -27,13 +114,15 @@ void describe(Visit& visit, PairSettings& pair) {
   visit({.name = "normal_stiffness",
          .dimension = Dimension::stiffness,
          .range = positive,
-         .required = true,
+         .otherwise = "**required** with linear",
+         .only_with = "contact.law: linear",
          .meaning = "Spring along the line of centres."},
         pair.normal_stiffness);
   visit({.name = "tangential_stiffness",
          .dimension = Dimension::stiffness,
          .range = not_negative,
          .otherwise = "2/7 of `normal_stiffness`",
+         .only_with = "contact.law: linear",
          .meaning = "Spring across the line of centres."},
         pair.tangential_stiffness);
   visit({.name = "restitution",
@@ -42,12 +131,31 @@ void describe(Visit& visit, PairSettings& pair) {
         pair.restitution);
   visit({.name = "friction", .range = not_negative, .meaning = "Coulomb's coefficient."},
         pair.friction);
+  describe_rolling_and_cohesion(visit, pair);
 }
 
 template <class Visit>
 void describe(Visit& visit, ContactSettings& contact) {
-  visit({.name = "law", .meaning = "`linear`: spring and dashpot (Cundall and Strack 1979)."},
+  visit({.name = "law",
+         .meaning = "`linear`: springs and dashpots (Cundall and Strack 1979); `hertz`: elastic "
+                    "spheres (Hertz 1882, Mindlin 1949, damping after Tsuji et al. 1992)."},
         contact.law);
+  visit({.name = "rolling",
+         .meaning = "Torque against rolling (Ai et al. 2011): `constant_torque` is their model A, "
+                    "`spring_dashpot` C, which also holds particles at rest."},
+        contact.rolling);
+  visit({.name = "cohesion",
+         .meaning =
+             "Attraction: `sjkr` in proportion to the area of contact; `jkr` (with `law: hertz`) "
+             "of adhesive elastic spheres (Johnson, Kendall and Roberts 1971); "
+             "`liquid_bridge` forms on contact and holds up to its rupture (Willett et al. "
+             "2000)."},
+        contact.cohesion);
+  visit({.name = "walls",
+         .otherwise = "not set; required with hertz and pairs with `walls`",
+         .only_with = "law: hertz",
+         .meaning = "The elasticity of the walls."},
+        contact.walls);
   visit({.name = "pairs",
          .meaning = "One entry for each pair of materials and for each material with `walls`; the "
                     "native backend needs all."},

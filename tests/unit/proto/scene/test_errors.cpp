@@ -165,7 +165,7 @@ TEST(SceneErrors, are_all_reported_at_once_in_the_order_of_the_file) {
   text = replaced(text, "end_time: 0.1\n", "end_time: soon\n");
   text = replaced(text, "drag: wen_yu", "drag: wenyu");
   text = replaced(text, "side: z_max", "sied: z_max");
-  text = replaced(text, "law: linear", "law: hertz");
+  text = replaced(text, "law: linear", "law: hooke");
   text = replaced(text, "material: steel", "material: stel");  // found by a check after reading
   const std::string errors = errors_in(text);
   std::vector<std::string> starts{"s.yaml:5:13: scene.end_time",

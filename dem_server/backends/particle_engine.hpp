@@ -38,6 +38,12 @@ class ParticleEngine {
   /// each particle (row by row of `particles()`) that stays constant over the window.
   virtual void advance(double window, int sub_steps, std::span<const Vector3> force,
                        const Progress& progress) = 0;
+
+  /// After `advance`, before `commit`: take the rows `leaving` (ascending, of the candidate state)
+  /// out and add the spheres `entering`, whose ids ascend and are larger than any before. Rows that
+  /// stay keep their order. Undone by `rollback` with the rest of the window. Throws ConfigError
+  /// for spheres that are not sound (checked_rows), or too light for the time step.
+  virtual void exchange(std::span<const int> leaving, const ParticleState& entering) = 0;
   virtual void commit() = 0;
   virtual void rollback() = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_server/insertion/entry_box.hpp"
 #include "dem_server/insertion/packing.hpp"
 #include "dem_server/insertion/placement_check.hpp"
 #include "dem_server/insertion/read_particles.hpp"
@@ -17,35 +18,6 @@ struct Entry {
   const InsertionSettings& settings;
   int number;
 };
-
-/// The box of an entry: its `within` where given, else the domain.
-PackingBox box_of(const Entry& entry, const Domain& domain) {
-  PackingBox box{domain.lower, domain.upper, {}};
-  const Region& within = entry.settings.within;
-  const std::array<const std::optional<std::array<double, 2>>*, 3> ranges{&within.x, &within.y,
-                                                                          &within.z};
-  for (int axis = 0; axis < 3; ++axis) {
-    box.periodic[axis] = domain.periodic(axis);
-    if (!ranges[axis]->has_value()) continue;
-    const auto [low, high] = **ranges[axis];
-    // A bound written with fewer digits than the mesh's point is still the side.
-    const double rounding = 1e-9 * domain.length(axis);
-    if (!(low < high) || low < domain.lower[axis] - rounding ||
-        high > domain.upper[axis] + rounding) {
-      throw ConfigError(
-          "particles.insertion entry {}: within.{} is [{:.6g}, {:.6g}] m; it must ascend and lie "
-          "in the "
-          "domain, [{:.6g}, {:.6g}] m",
-          entry.number, "xyz"[axis], low, high, domain.lower[axis], domain.upper[axis]);
-    }
-    const bool whole =
-        low <= domain.lower[axis] + rounding && high >= domain.upper[axis] - rounding;
-    box.periodic[axis] = box.periodic[axis] && whole;
-    box.lower[axis] = std::max(low, domain.lower[axis]);
-    box.upper[axis] = std::min(high, domain.upper[axis]);
-  }
-  return box;
-}
 
 double diameter_of(const Entry& entry) {
   const double diameter = entry.settings.diameter;
@@ -116,7 +88,8 @@ std::vector<ListedParticle> placed(const Entry& entry, const Domain& domain) {
     }
     return listed;
   }
-  const PackingBox box = box_of(entry, domain);
+  const PackingBox box = entry_box(fmt::format("particles.insertion entry {}", entry.number),
+                                   entry.settings.within, domain);
   const std::vector<Vector3> centres =
       entry.settings.type == InsertionType::packing ? pack(entry, box) : lattice(entry, box);
   std::vector<ListedParticle> particles;

@@ -13,6 +13,7 @@ struct Sources {
   const CellGrid& grid;
   const Resorting& resorting;
   const ContactList* before;
+  const Blocks& blocks_before;
   std::array<Vector3, 27> shifts;
 
   int material(int place) const { return scope.material_of_row[spheres.row[place]]; }
@@ -62,12 +63,13 @@ Spring carried_spring(const Sources& from, int i, const PairSlot& slot) {
   }
   const int old_i = from.resorting.previous[i];
   const int old_j = from.resorting.previous[j];
+  if (old_i < 0 || old_j < 0) return {};
   const int shift = Shift::code(periods[0], periods[1], periods[2]);
   const int reverse = Shift::code(-periods[0], -periods[1], -periods[2]);
-  if (const Spring* held = find_spring(*from.before, from.blocks, old_i, old_j, shift)) {
+  if (const Spring* held = find_spring(*from.before, from.blocks_before, old_i, old_j, shift)) {
     return *held;
   }
-  if (const Spring* held = find_spring(*from.before, from.blocks, old_j, old_i, reverse)) {
+  if (const Spring* held = find_spring(*from.before, from.blocks_before, old_j, old_i, reverse)) {
     return {{-held->x[0], -held->x[1], -held->x[2]}};
   }
   return {};
@@ -105,7 +107,8 @@ void fill_pairs(const Sources& from, int index, ContactBlock& block) {
 Spring carried_wall_spring(const Sources& from, const WallSlot& slot) {
   if (from.before == nullptr) return {};
   const int old = from.resorting.previous[slot.particle];
-  const ContactBlock& block = from.before->blocks[from.blocks.holding(old)];
+  if (old < 0) return {};
+  const ContactBlock& block = from.before->blocks[from.blocks_before.holding(old)];
   auto held =
       std::lower_bound(block.walls.begin(), block.walls.end(), old,
                        [](const WallSlot& w, int particle) { return w.particle < particle; });
@@ -171,8 +174,9 @@ void connect_blocks(const Blocks& blocks, ContactList& list) {
 
 void make_contact_list(const ContactScope& scope, const Spheres& spheres, const Blocks& blocks,
                        const CellGrid& grid, const Resorting& resorting, const ContactList* before,
-                       ContactList& list) {
-  const Sources from{scope, spheres, blocks, grid, resorting, before, shift_vectors(scope.domain)};
+                       const Blocks& blocks_before, ContactList& list) {
+  const Sources from{scope,     spheres, blocks,        grid,
+                     resorting, before,  blocks_before, shift_vectors(scope.domain)};
   list.blocks.resize(blocks.count());
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
   for (int b = 0; b < blocks.count(); ++b) {

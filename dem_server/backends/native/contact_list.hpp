@@ -69,14 +69,14 @@ struct ContactScope {
 
 /// Where each particle came from when it was sorted anew.
 struct Resorting {
-  std::vector<int> previous;                        ///< its place before
+  std::vector<int> previous;                        ///< its place before; -1: it has just entered
   std::vector<std::array<std::int8_t, 3>> periods;  ///< subtracted from its position to wrap it
 };
 
 /// Make `list` for the spheres as they are, sorted by `grid`. Springs of pairs that `before` (the
-/// list in the previous order, or nullptr) holds are carried over.
+/// list in the previous order, in blocks of that time, or nullptr) holds are carried over.
 void make_contact_list(const ContactScope& scope, const Spheres& spheres, const Blocks& blocks,
                        const CellGrid& grid, const Resorting& resorting, const ContactList* before,
-                       ContactList& list);
+                       const Blocks& blocks_before, ContactList& list);
 
 }  // namespace fluxpact

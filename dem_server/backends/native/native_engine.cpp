@@ -23,6 +23,13 @@ struct SavedState {
   std::size_t list = 0;
   std::vector<std::vector<Spring>> pair_springs;  // by block
   std::vector<std::vector<Spring>> wall_springs;
+  // Only of a window in which particles entered or left.
+  bool exchanged = false;
+  ParticleState presented;
+  Blocks blocks;
+  StepLimit limit;
+  double largest_diameter = 0;
+  double skin = 0;
 };
 
 class NativeEngine final : public ParticleEngine {
@@ -33,16 +40,18 @@ class NativeEngine final : public ParticleEngine {
   bool mobile() const override { return true; }
   void advance(double window, int sub_steps, std::span<const Vector3> force,
                const Progress& progress) override;
+  void exchange(std::span<const int> leaving, const ParticleState& entering) override;
   void commit() override;
   void rollback() override;
 
  private:
   void size_up();
-  void load_rows();
+  void load_rows(int first);
+  void exchange_spheres(std::span<const int> leaving, const ParticleState& entering);
   void check_step(double time_step) const;
   void set_drive(std::span<const Vector3> force);
-  void sort_and_list(bool carry_springs);
-  void wrap_and_sort();
+  void sort_and_list(const Blocks* carry_from);
+  void wrap_and_sort(bool places_kept);
   void check_particles(double time_step, int sub_step, int sub_steps) const;
   [[noreturn]] void refuse(int row, double time_step, int sub_step, int sub_steps) const;
   bool is_sound(int place, double time_step) const;
@@ -61,6 +70,7 @@ class NativeEngine final : public ParticleEngine {
   bool any_periodic_;
   bool any_wall_;
   int threads_;
+  double time_step_;  ///< [s] of the scene
   StepLimit limit_;
   double largest_diameter_ = 0;
   double skin_ = 0;
@@ -96,13 +106,13 @@ NativeEngine::NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState i
   any_wall_ = is(SideKind::wall);
   size_up();
   const int asked = scene.particles.numerics.threads;
-  threads_ = std::clamp(asked > 0 ? asked : omp_get_max_threads(), 1, std::max(1, blocks_.count()));
+  threads_ = asked > 0 ? asked : omp_get_max_threads();
   limit_ = step_limit(laws_, presented_, any_wall_);
-  const double time_step = scene.coupling.window / sub_steps(scene);
-  check_step(time_step);
-  load_rows();
+  time_step_ = scene.coupling.window / sub_steps(scene);
+  check_step(time_step_);
+  load_rows(0);
   check_particles(0, 0, 0);
-  sort_and_list(false);
+  sort_and_list(nullptr);
   // Forces of contacts that exist from the start, with their springs at rest.
   add_contacts(context(), 0, lists_[list_], outbox_, spheres_);
   settle(context(), 0, lists_[list_], outbox_, spheres_);
@@ -113,6 +123,7 @@ NativeEngine::NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState i
 void NativeEngine::size_up() {
   const int count = presented_.size();
   double mean = 0;
+  largest_diameter_ = 0;
   for (const double radius : presented_.radius) {
     largest_diameter_ = std::max(largest_diameter_, 2 * radius);
     mean += 2 * radius / count;
@@ -132,11 +143,12 @@ void NativeEngine::size_up() {
   }
 }
 
-void NativeEngine::load_rows() {
+/// Spheres for the rows from `first` on.
+void NativeEngine::load_rows(int first) {
   const int count = presented_.size();
   spheres_.load.resize(count);
   spheres_.listed_at.resize(count);
-  for (int row = 0; row < count; ++row) {
+  for (int row = first; row < count; ++row) {
     const double radius = presented_.radius[row];
     const double mass = sphere_mass(radius, presented_.density[row]);
     const Vector3& x = presented_.position[row];
@@ -146,7 +158,7 @@ void NativeEngine::load_rows() {
     spheres_.spin.push_back({{w.x(), w.y(), w.z()}, 1.0 / (0.4 * mass * radius * radius)});
     spheres_.row.push_back(row);
   }
-  drive_.assign(count, Vector3::Zero());
+  drive_.resize(count, Vector3::Zero());
 }
 
 void NativeEngine::check_step(double time_step) const {
@@ -193,7 +205,7 @@ void NativeEngine::advance(double window, int sub_steps, std::span<const Vector3
     const Kick kick = step == 1 ? Kick::half : Kick::full;
     if (move(context(), kick, time_step, 0.5 * skin_, lists_[list_], outbox_, spheres_)) {
       check_particles(time_step, step, sub_steps);
-      sort_and_list(true);
+      sort_and_list(&blocks_);
     }
     add_contacts(context(), time_step, lists_[list_], outbox_, spheres_);
     if (progress) progress();
@@ -203,16 +215,70 @@ void NativeEngine::advance(double window, int sub_steps, std::span<const Vector3
   present();
 }
 
+void NativeEngine::exchange(std::span<const int> leaving, const ParticleState& entering) {
+  if (leaving.empty() && entering.size() == 0) return;
+  if (!saved_.exchanged) {
+    saved_.exchanged = true;
+    saved_.presented = presented_;
+    saved_.blocks = blocks_;
+    saved_.limit = limit_;
+    saved_.largest_diameter = largest_diameter_;
+    saved_.skin = skin_;
+  }
+  const Blocks blocks_before = blocks_;
+  exchange_spheres(leaving, checked_rows(entering, laws_.walls()));
+  size_up();
+  limit_ = step_limit(laws_, presented_, any_wall_);
+  check_step(time_step_);
+  check_particles(0, 0, 0);
+  sort_and_list(&blocks_before);
+  add_contacts(context(), 0, lists_[list_], outbox_, spheres_);
+  settle(context(), 0, lists_[list_], outbox_, spheres_);
+  present();
+}
+
+/// Rows and spheres without those that leave, then those that enter; resorting_.previous says where
+/// each sphere was.
+void NativeEngine::exchange_spheres(std::span<const int> leaving, const ParticleState& entering) {
+  std::vector<int> row_now(presented_.size(), -1);
+  std::size_t next = 0;
+  for (int row = 0, kept = 0; row < presented_.size(); ++row) {
+    const bool leaves = next < leaving.size() && leaving[next] == row;
+    if (leaves)
+      ++next;
+    else
+      row_now[row] = kept++;
+  }
+  std::vector<int> gone;  // places
+  resorting_.previous.clear();
+  for (int place = 0; place < spheres_.size(); ++place) {
+    int& row = spheres_.row[place];
+    row = row_now[row];
+    if (row < 0)
+      gone.push_back(place);
+    else
+      resorting_.previous.push_back(place);
+  }
+  remove_rows(std::span<const int>(gone), spheres_.body);
+  remove_rows(std::span<const int>(gone), spheres_.spin);
+  remove_rows(std::span<const int>(gone), spheres_.row);
+  exchange_rows(leaving, entering, presented_);
+  load_rows(spheres_.size());
+  resorting_.previous.resize(spheres_.size(), -1);
+}
+
 void NativeEngine::commit() {
   has_candidate_ = false;
   saved_.valid = false;
+  saved_.exchanged = false;
 }
 
 // ---- lists
 // --------------------------------------------------------------------------------------------
 
-/// Wrap what has left through periodic sides, sort all rows into cells.
-void NativeEngine::wrap_and_sort() {
+/// Wrap what has left through periodic sides, sort all rows into cells. Unless `places_kept`,
+/// resorting_.previous says where each was before spheres entered or left.
+void NativeEngine::wrap_and_sort(bool places_kept) {
   const int count = spheres_.size();
   std::vector<std::array<std::int8_t, 3>> periods(count);
   for (int i = 0; any_periodic_ && i < count; ++i) {
@@ -229,7 +295,9 @@ void NativeEngine::wrap_and_sort() {
              {data, static_cast<int>(sizeof(Body) / sizeof(double)), count});
   sorted_ = spheres_;
   sorted_drive_ = drive_;
-  resorting_.previous = grid_.order();
+  std::vector<int> previous = grid_.order();
+  for (int& place : previous) place = places_kept ? place : resorting_.previous[place];
+  resorting_.previous = std::move(previous);
   resorting_.periods.resize(count);
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int place = 0; place < count; ++place) {
@@ -246,13 +314,15 @@ void NativeEngine::wrap_and_sort() {
 }
 
 /// Sort and list anew. The loads are those of the old order after this: `add_contacts` must follow.
-void NativeEngine::sort_and_list(bool carry_springs) {
-  wrap_and_sort();
+/// Springs come from the list in use, in the blocks `carry_from`; nullptr: there are none.
+void NativeEngine::sort_and_list(const Blocks* carry_from) {
+  wrap_and_sort(carry_from == nullptr || carry_from == &blocks_);
   std::size_t made = 0;
   while (made == list_ || (saved_.valid && made == saved_.list)) ++made;
   const ContactScope scope{domain_, laws_, presented_.material, skin_, friction_, threads_};
   make_contact_list(scope, spheres_, blocks_, grid_, resorting_,
-                    carry_springs ? &lists_[list_] : nullptr, lists_[made]);
+                    carry_from != nullptr ? &lists_[list_] : nullptr,
+                    carry_from != nullptr ? *carry_from : blocks_, lists_[made]);
   list_ = made;
   outbox_.resize(lists_[list_].outbox_size);
 }
@@ -366,6 +436,15 @@ void NativeEngine::save() {
 void NativeEngine::rollback() {
   if (!has_candidate_) return;
   has_candidate_ = false;
+  if (saved_.exchanged) {
+    presented_ = std::move(saved_.presented);
+    blocks_ = saved_.blocks;
+    limit_ = saved_.limit;
+    largest_diameter_ = saved_.largest_diameter;
+    skin_ = saved_.skin;
+    drive_.resize(presented_.size());
+    saved_.exchanged = false;
+  }
   spheres_ = saved_.spheres;
   list_ = saved_.list;
   for (int b = 0; b < blocks_.count(); ++b) {

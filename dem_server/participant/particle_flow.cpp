@@ -1,5 +1,7 @@
 #include "dem_server/participant/particle_flow.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include "proto/base/compensated_sum.hpp"
 #include "proto/participant/field_names.hpp"
 
@@ -80,7 +82,17 @@ void ParticleFlow::advance(const Window& window, const ParticleBulk& bulk, Parti
   window_.momentum_left.front() = left.total_momentum();
 }
 
-void ParticleFlow::commit() { inflow_.commit(); }
+void ParticleFlow::commit() {
+  inflow_.commit();
+  if (window_.waiting > 0 && !said_waiting_) {
+    spdlog::warn(
+        "{} particles of particles.inflow found no room and wait to come in (said once; the "
+        "audit's "
+        "particles_waiting counts them): lower the rate, raise the velocity, or enlarge the place",
+        window_.waiting);
+    said_waiting_ = true;
+  }
+}
 
 void ParticleFlow::rollback() { inflow_.rollback(); }
 

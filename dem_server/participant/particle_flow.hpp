@@ -47,6 +47,7 @@ class ParticleFlow {
   Domain domain_;
   Inflow inflow_;
   WindowFlow window_;
+  bool said_waiting_ = false;
   std::vector<int> leaving_;
   std::vector<int> row_before_;
   ParticleState entering_;

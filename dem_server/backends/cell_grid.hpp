@@ -2,7 +2,9 @@
 // Behind the contact list of the native engine and the packing and overlap check of the insertion.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -49,6 +51,11 @@ class CellGrid {
   /// comes once over all k. A particle is never paired with its own image.
   template <class Visit>
   void visit_partners(int place, const Visit& visit) const;
+
+  /// Calls visit(other, shift) with every place whose cell touches the cube of `reach` [m] around
+  /// `at` (wrapped); across periodic sides with each image, `reach` being at most a period.
+  template <class Visit>
+  void visit_within(const Vector3& at, double reach, const Visit& visit) const;
 
  private:
   struct Range {
@@ -113,6 +120,29 @@ void CellGrid::visit_partners(int place, const Visit& visit) const {
     const Range range = neighbour_cell(cell, offset);
     for (int other = range.first; other < range.last; ++other) {
       if (other != place) visit(other, range.shift);
+    }
+  }
+}
+
+template <class Visit>
+void CellGrid::visit_within(const Vector3& at, double reach, const Visit& visit) const {
+  std::array<int, 3> low{};
+  std::array<int, 3> high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = (at[axis] - lower_[axis]) * cells_per_metre_[axis];
+    const double span = reach * cells_per_metre_[axis];
+    low[axis] = static_cast<int>(std::floor(place - span));
+    high[axis] = static_cast<int>(std::floor(place + span));
+    if (periodic_[axis]) continue;
+    low[axis] = std::clamp(low[axis], 0, cells_[axis] - 1);
+    high[axis] = std::clamp(high[axis], 0, cells_[axis] - 1);
+  }
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const Range range = neighbour_cell({0, 0, 0}, {i, j, k});
+        for (int other = range.first; other < range.last; ++other) visit(other, range.shift);
+      }
     }
   }
 }

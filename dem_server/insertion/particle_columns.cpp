@@ -68,7 +68,7 @@ ParticleColumns::ParticleColumns(const TextLine& line, const std::vector<TextCel
   }
   const auto given = [&](std::size_t column) { return at_.at(column) >= 0; };
   if (!given(x) || !given(x + 1) || !given(x + 2)) {
-    throw ConfigError("{}:{}: the columns must include x, y and z", line.path, line.number);
+    throw ConfigError("{}:{}: the columns must name x, y and z", line.path, line.number);
   }
   for (const std::size_t first : {vx, wx}) {
     if (given(first) == given(first + 1) && given(first) == given(first + 2)) continue;

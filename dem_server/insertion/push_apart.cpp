@@ -24,8 +24,8 @@ constexpr int most_sweeps = 4000;
 struct Relaxation {
   const Domain& domain;
   double allowed = 0;
-  double skin = 0;     // [m]
-  double largest = 0;  // diameter [m]
+  double skin = 0;  // [m]
+  double mean = 0;  // diameter [m]
   std::vector<Vector3> position;
   std::vector<double> diameter;  // [m]
   std::vector<int> sphere;       // number of each in the caller's order
@@ -60,17 +60,21 @@ void reorder(const std::vector<int>& order, std::vector<T>& values) {
 void list_pairs(Relaxation& state) {
   for (Vector3& position : state.position) position = wrapped(state.domain, position);
   const int count = static_cast<int>(state.position.size());
-  state.grid.sort(state.domain, state.largest + state.skin,
-                  {state.position.front().data(), 3, count});
+  // Cells of about a mean diameter: a large sphere looks into many of them, the many small ones
+  // into few.
+  state.grid.sort(state.domain, state.mean + state.skin, {state.position.front().data(), 3, count});
   reorder(state.grid.order(), state.position);
   reorder(state.grid.order(), state.diameter);
   reorder(state.grid.order(), state.sphere);
   state.listed_at = state.position;
   state.pairs.clear();
   for (int a = 0; a < count; ++a) {
-    state.grid.visit_partners(a, [&](int b, int shift) {
+    const double size = state.diameter[a];
+    state.grid.visit_within(state.position[a], size + state.skin, [&](int b, int shift) {
+      // Each pair from its larger sphere.
+      if (state.diameter[b] > size || (state.diameter[b] == size && b <= a)) return;
       const Vector3 apart = state.position[b] + state.shifts[shift] - state.position[a];
-      const double cutoff = 0.5 * (state.diameter[a] + state.diameter[b]) + state.skin;
+      const double cutoff = 0.5 * (size + state.diameter[b]) + state.skin;
       if (apart.squaredNorm() < cutoff * cutoff) state.pairs.push_back({a, b, shift});
     });
   }
@@ -138,10 +142,10 @@ PushedApart push_apart(const Domain& domain, std::span<const double> diameters, 
   state.diameter.assign(diameters.begin(), diameters.end());
   for (int i = 0; i < static_cast<int>(centres.size()); ++i) {
     state.sphere.push_back(i);
-    state.skin += skin_share * diameters[i] / static_cast<double>(centres.size());
-    state.largest = std::max(state.largest, diameters[i]);
+    state.mean += diameters[i] / static_cast<double>(centres.size());
     keep_inside(state, diameters[i], state.position[i]);
   }
+  state.skin = skin_share * state.mean;
   list_pairs(state);
   PushedApart result = largest_overlap(state);
   for (int s = 0; s < most_sweeps && !result.done; ++s) {

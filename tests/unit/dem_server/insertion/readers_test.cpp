@@ -67,7 +67,7 @@ TEST(ReadDump, names_line_and_column_of_an_error) {
   expect_refusal(head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 oops 0\n", ":11:5: `oops`");
   expect_refusal(head + "ITEM: ATOMS id x y z\n1 0 0 0\n", ":11: the file ends");
   expect_refusal(head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0\n", ":11: 3 values under");
-  expect_refusal(head + "ITEM: ATOMS id xs ys zs\n", ":9: the columns must include x, y and z");
+  expect_refusal(head + "ITEM: ATOMS id xs ys zs\n", ":9: the columns must name x, y and z");
   expect_refusal("ITEM: TIMESTEP\n0\n", ": no `ITEM: ATOMS`");
 }
 

@@ -128,14 +128,14 @@ TEST(Amount, number_density_is_that_of_the_region) {
 }
 
 TEST(Amount, ten_to_one_packs_and_is_reproducible) {
-  Scene scene = box(0.02);
+  Scene scene = box(0.01);
   InsertionSettings& entry = scene.particles.insertion[0];
   entry.sizes.emplace();
   entry.sizes->by = SizeWeight::mass;
-  entry.sizes->table = {{0.5e-3, 1.0}, {5e-3, 1.0}};
-  entry.fraction = 0.45;
+  entry.sizes->table = {{0.4e-3, 1.0}, {4e-3, 1.0}};
+  entry.fraction = 0.35;
   const ParticleState first = insert(scene);  // the placement check holds the overlaps
-  EXPECT_NEAR(solids(first), 0.45 * 8e-6, 0.5 * sphere_volume(5e-3));
+  EXPECT_NEAR(solids(first), 0.35 * 1e-6, 0.5 * sphere_volume(4e-3));
   EXPECT_EQ(first.position, insert(scene).position);
   EXPECT_EQ(first.radius, insert(scene).radius);
   entry.seed = 2;

@@ -6,6 +6,7 @@
 
 #include "proto/scene/key.hpp"
 #include "proto/scene/scene.hpp"
+#include "proto/scene/schema_insertion.hpp"
 
 namespace fluxpact {
 
@@ -163,70 +164,6 @@ void describe(Visit& visit, ContactSettings& contact) {
 }
 
 template <class Visit>
-void describe(Visit& visit, InsertionSettings& entry) {
-  visit({.name = "type",
-         .required = true,
-         .meaning = "`packing`: a number of spheres at random; `lattice`: a region filled with a "
-                    "regular lattice; `file`: read."},
-        entry.type);
-  const bool packing = entry.type == InsertionType::packing;
-  const bool file = entry.type == InsertionType::file;
-  visit({.name = "material",
-         .text = TextRule::name,
-         .required = true,
-         .meaning = "One of `particles.materials`."},
-        entry.material);
-  visit({.name = "diameter",
-         .dimension = Dimension::length,
-         .range = positive,
-         .required = !file,
-         .otherwise = "the file's column `diameter`, which wins",
-         .meaning = "Of the spheres. Optional with `type: file`, required else."},
-        entry.diameter);
-  visit({.name = "count",
-         .range = {.lower = 1},
-         .required = true,
-         .applies = packing,
-         .only_with = "type: packing",
-         .meaning = "Number of spheres."},
-        entry.count);
-  visit({.name = "within",
-         .otherwise = "the whole domain",
-         .applies = !file,
-         .only_with = "type: packing | lattice",
-         .meaning = "Where the spheres start."},
-        entry.within);
-  visit({.name = "seed",
-         .range = not_negative,
-         .applies = packing,
-         .only_with = "type: packing",
-         .meaning = "Of the random numbers: the same seed gives the same packing."},
-        entry.seed);
-  visit({.name = "spacing",
-         .dimension = Dimension::length,
-         .range = positive,
-         .otherwise = "1.001 diameters",
-         .applies = entry.type == InsertionType::lattice,
-         .only_with = "type: lattice",
-         .meaning = "Distance of neighbours."},
-        entry.spacing);
-  visit({.name = "velocity",
-         .dimension = Dimension::velocity,
-         .applies = !file,
-         .only_with = "type: packing | lattice",
-         .meaning = "Of all spheres at the start."},
-        entry.velocity);
-  visit({.name = "path",
-         .required = true,
-         .applies = file,
-         .only_with = "type: file",
-         .meaning =
-             "CSV with a header line x,y,z[,vx,vy,vz][,diameter], in SI units; relative to the "
-             "folder of the scene."},
-        entry.path);
-}
-
-template <class Visit>
 void describe(Visit& visit, ParticleNumerics& numerics) {
   visit({.name = "precision",
          .meaning = "Of the native engine. `mixed`: positions in double, velocities, forces and "
@@ -260,6 +197,20 @@ void describe(Visit& visit, ParticleSettings& particles) {
         particles.walls);
   visit({.name = "insertion", .meaning = "The particles at time 0; none: an empty domain."},
         particles.insertion);
+  visit({.name = "overlaps",
+         .meaning = "Spheres at time 0 that overlap by more than a tenth of the smaller diameter, "
+                    "or stick out of the domain by that: `refuse`: an error that names them; "
+                    "`relax`: all are pushed apart first, until none overlaps by more than 1 %."},
+        particles.overlaps);
+  visit({.name = "inflow", .meaning = "Particles that come in during the run; none: nobody does."},
+        particles.inflow);
+  visit({.name = "outflow",
+         .text = TextRule::name,
+         .otherwise = "every patch of type pressure that fills a side of the domain",
+         .meaning = "Patches of type pressure through which particles leave the domain, once "
+                    "their centre has passed. Elsewhere, and with an empty list anywhere, a "
+                    "particle that gets out is an error."},
+        particles.outflow);
   visit({.name = "numerics", .meaning = "How the particles are computed."}, particles.numerics);
 }
 

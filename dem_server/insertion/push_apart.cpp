@@ -70,12 +70,16 @@ void list_pairs(Relaxation& state) {
   state.pairs.clear();
   for (int a = 0; a < count; ++a) {
     const double size = state.diameter[a];
-    state.grid.visit_within(state.position[a], size + state.skin, [&](int b, int shift) {
+    const auto consider = [&](int b, int shift) {
       // Each pair from its larger sphere.
       if (state.diameter[b] > size || (state.diameter[b] == size && b <= a)) return;
       const Vector3 apart = state.position[b] + state.shifts[shift] - state.position[a];
       const double cutoff = 0.5 * (size + state.diameter[b]) + state.skin;
       if (apart.squaredNorm() < cutoff * cutoff) state.pairs.push_back({a, b, shift});
+    };
+    const double reach = size + state.skin;
+    state.grid.visit_near(state.position[a].data(), reach, [&](int first, int last, int shift) {
+      for (int b = first; b < last; ++b) consider(b, shift);
     });
   }
 }

@@ -101,7 +101,7 @@ void soften(const Settling& bed, double smallest, Scene& scene) {
   double stiffest = INFINITY;
   for (const PairSettings& pair : scene.particles.contact.pairs) {
     if (scene.particles.contact.law == ContactLaw::linear) {
-      stiffest = std::min(stiffest, pair.normal_stiffness);
+      stiffest = std::min(stiffest, pair.normal_stiffness.value_or(INFINITY));
     }
   }
   const double pressure = 0.6 * bed.density * bed.gravity * bed.height;  // at the bottom [Pa]

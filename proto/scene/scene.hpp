@@ -338,7 +338,8 @@ enum class Overlaps { refuse, relax };
 
 enum class WallSource { from_mesh, none };
 
-/// double: all numbers. mixed: positions in double, the rest of a particle and its contacts in float.
+/// double: all numbers. mixed: positions in double, the rest of a particle and its contacts in
+/// float.
 enum class Precision { full, mixed };
 
 struct ParticleNumerics {

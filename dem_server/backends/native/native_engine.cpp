@@ -3,8 +3,9 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "dem_server/backends/native/contact_pass.hpp"
 #include "dem_server/backends/native/soundness.hpp"
@@ -27,6 +28,26 @@ constexpr int smallest_block = 128;
 template <class Real>
 struct SavedSprings {
   Springs<Real> inner, outer, image, plane;
+};
+
+/// What the places of a buffer of bodies hold.
+struct Places {
+  std::vector<int> row;       // of the presented state
+  std::vector<int> previous;  // the place in the list in use, -1: not in it
+};
+
+/// Lengths and limits that follow from the particles.
+struct Sizes {
+  StepLimit limit;
+  RootMasses root_masses;
+  double skin = 0;            // [m]
+  double beyond_contact = 0;  // [m] that a law reaches beyond touching surfaces
+};
+
+/// Of a window in which particles entered or left: what rollback brings back.
+struct BeforeExchange {
+  ParticleState presented;
+  Sizes sizes;
 };
 
 /// Pairs of the list name their law by one byte.
@@ -61,6 +82,7 @@ class NativeEngine final : public ParticleEngine {
   EngineCounters counters() const override;
   void advance(double window, int sub_steps, std::span<const Vector3> force,
                const Progress& progress) override;
+  void exchange(std::span<const int> leaving, const ParticleState& entering) override;
   void commit() override;
   void rollback() override;
 
@@ -70,12 +92,15 @@ class NativeEngine final : public ParticleEngine {
   using List = ContactList<Real>;
 
   void size_up();
-  void load_rows();
+  BodyRow body_of(int row) const;
   void tabulate_sides();
   void set_drive(std::span<const Vector3> force);
   bool sweep(Phase phase, double time_step, double spring_step, int from, int to,
              HugeVector<LoadRow>& loads);
-  void sort_and_list(int from, int to, bool carry_springs);
+  void sort_and_list(int from, int to, const Places& places, bool carry_springs);
+  Places take_out(std::span<const int> leaving);
+  void put_in(const ParticleState& entering, Places& places);
+  Places kept_places() const;
   void wrap(HugeVector<BodyRow>& bodies);
   void check(int bodies, double time_step, int sub_step, int sub_steps) const;
   void present(int bodies);
@@ -90,11 +115,9 @@ class NativeEngine final : public ParticleEngine {
   Vector3 gravity_;
   bool any_periodic_;
   int threads_;
-  StepLimit limit_;
-  RootMasses root_masses_;
-  bool any_wall_;
-  double skin_ = 0;            // [m]
-  double beyond_contact_ = 0;  // [m] that a law reaches beyond touching surfaces
+  std::vector<int> wall_materials_;
+  double time_step_;  // [s] of the scene
+  Sizes sizes_;
 
   ParticleState presented_;
   std::array<HugeVector<BodyRow>, 3> bodies_;  // committed, and two to go back and forth
@@ -106,6 +129,7 @@ class NativeEngine final : public ParticleEngine {
   int list_ = 0;
   int committed_list_ = 0;
   std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
+  std::optional<BeforeExchange> before_exchange_;
   bool has_candidate_ = false;
   HugeVector<Drive<Real>> drive_;
   HugeVector<LoadRow> sums_;  // room for each thread
@@ -132,15 +156,23 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
   any_periodic_ = is(SideKind::periodic);
   const int asked = scene.particles.numerics.threads;
   threads_ = asked > 0 ? asked : omp_get_max_threads();
-  size_up();
-  any_wall_ = is(SideKind::wall);
-  limit_ = step_limit(laws_, presented_, any_wall_);
-  check_time_step(limit_, scene.coupling.window / sub_steps(scene));
+  if (is(SideKind::wall)) wall_materials_.push_back(laws_.walls());
+  time_step_ = scene.coupling.window / sub_steps(scene);
   check_law_indices(laws_);
+  size_up();
   tabulate_sides();
-  load_rows();
+  const int count = presented_.size();
+  Places places;
+  for (int row = 0; row < count; ++row) {
+    bodies_[0].push_back(body_of(row));
+    places.row.push_back(row);
+  }
+  places.previous.assign(count, -1);
+  lists_[list_].row = places.row;
   check(0, 0, 0, 0);
-  sort_and_list(0, 1, false);
+  loads_.resize(count);
+  bodies_[2].resize(count);
+  sort_and_list(0, 1, places, false);
   // Forces of contacts that exist from the start, with their springs at rest.
   sweep(Phase::settle, 0, 0, 1, 2, loads_);
   committed_ = candidate_ = 2;
@@ -148,7 +180,7 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
   present(committed_);
 }
 
-/// Lengths that follow from the particles.
+/// Lengths and limits that follow from the particles.
 template <class Real, bool turning>
 void NativeEngine<Real, turning>::size_up() {
   double largest = 0;
@@ -157,9 +189,12 @@ void NativeEngine<Real, turning>::size_up() {
     largest = std::max(largest, 2 * radius);
     mean += 2 * radius / presented_.size();
   }
-  skin_ = skin_per_diameter * mean;
-  beyond_contact_ = reach_beyond_contact(laws_, 0.5 * largest);
-  check_periods(domain_, largest, largest + skin_ + beyond_contact_);
+  sizes_.skin = skin_per_diameter * mean;
+  sizes_.beyond_contact = reach_beyond_contact(laws_, 0.5 * largest);
+  sizes_.root_masses = common_root_masses(presented_);
+  sizes_.limit = step_limit(laws_, presented_, wall_materials_);
+  check_periods(domain_, largest, largest + sizes_.skin + sizes_.beyond_contact);
+  check_time_step(sizes_.limit, time_step_);
 }
 
 template <class Real, bool turning>
@@ -176,30 +211,20 @@ void NativeEngine<Real, turning>::tabulate_sides() {
 }
 
 template <class Real, bool turning>
-void NativeEngine<Real, turning>::load_rows() {
-  const int count = presented_.size();
-  for (HugeVector<BodyRow>& bodies : bodies_) bodies.resize(count);
-  List& list = lists_[list_];
-  list.row.resize(count);
-  for (int row = 0; row < count; ++row) {
-    const double radius = presented_.radius[row];
-    BodyRow& body = bodies_[0][row];
-    body.radius = radius;
-    body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
-    for (int axis = 0; axis < 3; ++axis) {
-      body.position[axis] = presented_.position[row][axis];
-      body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);
-      if constexpr (turning) {
-        body.radius_spin[axis] = static_cast<Real>(radius * presented_.spin[row][axis]);
-      }
+auto NativeEngine<Real, turning>::body_of(int row) const -> BodyRow {
+  const double radius = presented_.radius[row];
+  BodyRow body{};
+  body.radius = radius;
+  body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+  for (int axis = 0; axis < 3; ++axis) {
+    body.position[axis] = presented_.position[row][axis];
+    body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);
+    if constexpr (turning) {
+      body.radius_spin[axis] = static_cast<Real>(radius * presented_.spin[row][axis]);
     }
-    if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
-    list.row[row] = row;
   }
-  root_masses_ = common_root_masses(presented_);
-  loads_.resize(count);
-  candidate_loads_.resize(count);
-  drive_.assign(count, {});
+  if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
+  return body;
 }
 
 template <class Real, bool turning>
@@ -208,6 +233,7 @@ void NativeEngine<Real, turning>::set_drive(std::span<const Vector3> force) {
   if (static_cast<int>(force.size()) != count) {
     throw NumericsError("force on the particles: {} rows for {} particles", force.size(), count);
   }
+  drive_.resize(count);
   int bad = count;
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
@@ -244,8 +270,8 @@ bool NativeEngine<Real, turning>::sweep(Phase phase, double time_step, double sp
   all.shifts = shifts_.data();
   all.planes = planes_.data();
   all.laws = &law_table_;
-  all.beyond_contact = beyond_contact_;
-  all.root_masses = root_masses_;
+  all.beyond_contact = sizes_.beyond_contact;
+  all.root_masses = sizes_.root_masses;
   bool beyond = false;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(|| : beyond)
   for (int b = 0; b < blocks.count(); ++b) {
@@ -267,18 +293,22 @@ void NativeEngine<Real, turning>::advance(double window, int sub_steps,
   if (has_candidate_) rollback();
   const double time_step = window / sub_steps;
   // Contacts by Hertz' law are the shorter the faster they are.
-  if (laws_.model().law == ContactLaw::hertz) limit_ = step_limit(laws_, presented_, any_wall_);
-  check_time_step(limit_, time_step);
+  if (laws_.model().law == ContactLaw::hertz)
+    sizes_.limit = step_limit(laws_, presented_, wall_materials_);
+  check_time_step(sizes_.limit, time_step);
   set_drive(force);
   save_springs();
   has_candidate_ = true;
   int now = (committed_ + 1) % 3;
   int next = (committed_ + 2) % 3;
+  bodies_[now].resize(bodies_[committed_].size());
+  bodies_[next].resize(bodies_[committed_].size());
+  candidate_loads_.resize(loads_.size());
   bool beyond = sweep(Phase::start, time_step, 0, committed_, now, loads_);
   for (int step = 1; step <= sub_steps; ++step) {
     if (beyond) {
       check(now, time_step, step, sub_steps);
-      sort_and_list(now, next, true);
+      sort_and_list(now, next, kept_places(), true);
       std::swap(now, next);
     }
     const Phase phase = step < sub_steps ? Phase::drift : Phase::settle;
@@ -299,6 +329,69 @@ void NativeEngine<Real, turning>::commit() {
   committed_ = candidate_;
   committed_list_ = list_;
   std::swap(loads_, candidate_loads_);
+  before_exchange_.reset();
+}
+
+// ---- particles that leave and enter
+// ------------------------------------------------------------------
+
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::exchange(std::span<const int> leaving,
+                                           const ParticleState& entering) {
+  if (leaving.empty() && entering.size() == 0) return;
+  if (!before_exchange_) before_exchange_ = BeforeExchange{presented_, sizes_};
+  const ParticleState checked = checked_rows(entering, laws_.walls());
+  Places places = take_out(leaving);
+  exchange_rows(leaving, checked, presented_);
+  put_in(checked, places);
+  size_up();
+  const int free = 3 - committed_ - candidate_;
+  bodies_[free].resize(bodies_[candidate_].size());
+  drive_.resize(bodies_[candidate_].size());
+  // Who stays keeps its load; who enters touches nothing.
+  sort_and_list(candidate_, free, places, true);
+  HugeVector<LoadRow> sorted(candidate_loads_.size());
+  for (std::size_t place = 0; place < sorted.size(); ++place) {
+    sorted[place] = candidate_loads_[levels_.order()[place]];
+  }
+  candidate_loads_ = std::move(sorted);
+  candidate_ = free;
+  check(candidate_, 0, 0, 0);
+  present(candidate_);
+}
+
+/// The candidate's bodies and loads without some rows, with the rows that the others have then.
+template <class Real, bool turning>
+Places NativeEngine<Real, turning>::take_out(std::span<const int> leaving) {
+  std::vector<int> row_now(presented_.size(), 0);
+  for (const int row : leaving) row_now[row] = -1;
+  int kept = 0;
+  for (int& row : row_now) row = row < 0 ? -1 : kept++;
+  Places places;
+  HugeVector<BodyRow>& bodies = bodies_[candidate_];
+  const std::vector<int>& row_of = lists_[list_].row;
+  for (int place = 0; place < static_cast<int>(row_of.size()); ++place) {
+    const int row = row_now[row_of[place]];
+    if (row < 0) continue;
+    bodies[places.row.size()] = bodies[place];
+    candidate_loads_[places.row.size()] = candidate_loads_[place];
+    places.row.push_back(row);
+    places.previous.push_back(place);
+  }
+  bodies.resize(places.row.size());
+  candidate_loads_.resize(places.row.size());
+  return places;
+}
+
+/// Appends those that enter, which are the last rows already.
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::put_in(const ParticleState& entering, Places& places) {
+  for (int row = presented_.size() - entering.size(); row < presented_.size(); ++row) {
+    bodies_[candidate_].push_back(body_of(row));
+    candidate_loads_.push_back({});
+    places.row.push_back(row);
+    places.previous.push_back(-1);
+  }
 }
 
 // ---- lists
@@ -323,16 +416,26 @@ void NativeEngine<Real, turning>::wrap(HugeVector<BodyRow>& bodies) {
   resorting_.periods.swap(periods);
 }
 
-/// Sort the rows of `from` into those of `to` and list anew.
+/// The places of the list in use.
 template <class Real, bool turning>
-void NativeEngine<Real, turning>::sort_and_list(int from, int to, bool carry_springs) {
+Places NativeEngine<Real, turning>::kept_places() const {
+  Places places{lists_[list_].row, std::vector<int>(lists_[list_].row.size())};
+  std::iota(places.previous.begin(), places.previous.end(), 0);
+  return places;
+}
+
+/// Sort the rows of `from`, which are at `places`, into those of `to` and list anew.
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::sort_and_list(int from, int to, const Places& places,
+                                                bool carry_springs) {
   HugeVector<BodyRow>& unsorted = bodies_[from];
   HugeVector<BodyRow>& sorted = bodies_[to];
   const int count = static_cast<int>(unsorted.size());
   wrap(unsorted);
   constexpr int stride = sizeof(BodyRow) / sizeof(double);
   const double* data = count > 0 ? unsorted.front().position : nullptr;
-  levels_.sort(domain_, skin_ + beyond_contact_, {data, stride, count}, {data + 3, stride});
+  levels_.sort(domain_, sizes_.skin + sizes_.beyond_contact, {data, stride, count},
+               {data + 3, stride});
 
   int made = 0;
   while (made == list_ || (has_candidate_ && made == committed_list_)) ++made;
@@ -340,20 +443,23 @@ void NativeEngine<Real, turning>::sort_and_list(int from, int to, bool carry_spr
   List& list = lists_[made];
   list.blocks = {count, std::clamp(count / least_blocks, smallest_block, largest_block)};
   list.row.resize(count);
+  sorted.resize(count);
+  drive_.resize(count);
   sorted_drive_.resize(count);
+  resorting_.previous.resize(count);
   const std::vector<int>& order = levels_.order();
   std::vector<std::array<std::int8_t, 3>> periods(count);
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int place = 0; place < count; ++place) {
     sorted[place] = unsorted[order[place]];
     sorted_drive_[place] = drive_[order[place]];
-    list.row[place] = before.row[order[place]];
+    list.row[place] = places.row[order[place]];
+    resorting_.previous[place] = places.previous[order[place]];
     periods[place] = resorting_.periods[order[place]];
   }
   std::swap(drive_, sorted_drive_);
   resorting_.periods.swap(periods);
-  resorting_.previous = order;
-  const ContactScope scope{domain_, laws_, skin_, beyond_contact_, threads_};
+  const ContactScope scope{domain_, laws_, sizes_.skin, sizes_.beyond_contact, threads_};
   make_contact_list<Real, turning>(scope, sorted, presented_.material, levels_, resorting_,
                                    carry_springs ? &before : nullptr, list);
   list_ = made;
@@ -369,7 +475,7 @@ void NativeEngine<Real, turning>::check(int bodies, double time_step, int sub_st
   const HugeVector<BodyRow>& rows = bodies_[bodies];
   const std::vector<int>& row_of = lists_[list_].row;
   const int none = presented_.size();
-  const bool may_touch = std::isfinite(limit_.longest);
+  const bool may_touch = std::isfinite(sizes_.limit.longest);
   int bad = none;
   const auto motion = [&](int i) {
     const Real* v = rows[i].velocity;
@@ -425,6 +531,11 @@ void NativeEngine<Real, turning>::rollback() {
   if (!has_candidate_) return;
   has_candidate_ = false;
   list_ = committed_list_;
+  if (before_exchange_) {
+    presented_ = std::move(before_exchange_->presented);
+    sizes_ = before_exchange_->sizes;
+    before_exchange_.reset();
+  }
   for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
     ContactBlock<Real>& block = lists_[list_].block[b];
     block.inner_springs = saved_springs_[b].inner;

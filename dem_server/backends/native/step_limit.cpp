@@ -103,17 +103,22 @@ void check_meeting(const Meeting& meeting, const ContactModel& model) {
 
 double in_series(double a, double b) { return a * b / (a + b); }
 
-/// The partner `b` of `a`; what is not finite is a wall's.
+/// A particle of material `a` at a wall of material `wall`.
+Meeting meeting_with_wall(const ContactLaws& laws, const Present& one, int a, int wall) {
+  return {laws[laws.index(a, wall)],
+          fmt::format("[{}, {}]", laws.name(a), laws.name(wall)),
+          one.lightest,
+          one.smallest,
+          one.largest,
+          one.fastest};
+}
+
+/// Particles of the materials `a` and `b`.
 Meeting meeting_of(const ContactLaws& laws, const std::vector<Present>& present, int a, int b) {
   const Present& one = present[a];
-  const std::string name = fmt::format("[{}, {}]", laws.name(a), laws.name(b));
-  const PairLaw& law = laws[laws.index(a, b)];
-  if (b == laws.walls()) {
-    return {law, name, one.lightest, one.smallest, one.largest, one.fastest};
-  }
   const Present& other = present[b];
-  return {law,
-          name,
+  return {laws[laws.index(a, b)],
+          fmt::format("[{}, {}]", laws.name(a), laws.name(b)),
           in_series(one.lightest, other.lightest),
           in_series(one.smallest, other.smallest),
           in_series(one.largest, other.largest),
@@ -122,7 +127,8 @@ Meeting meeting_of(const ContactLaws& laws, const std::vector<Present>& present,
 
 }  // namespace
 
-StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles, bool walls) {
+StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
+                     std::span<const int> walls) {
   const std::vector<Present> present = count_materials(laws, particles);
   StepLimit least{infinity, ""};
   const auto consider = [&](const StepLimit& limit) {
@@ -131,13 +137,14 @@ StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles, bo
   for (int a = 0; a < laws.walls(); ++a) {
     if (present[a].count == 0) continue;
     bool meets = false;
-    for (int b = laws.walls(); b >= a; --b) {
-      const bool partner = b == laws.walls() ? walls : present[b].count > (a == b ? 1 : 0);
-      if (!partner) continue;
-      const Meeting meeting = meeting_of(laws, present, a, b);
+    const auto meet = [&](const Meeting& meeting) {
       check_meeting(meeting, laws.model());
       consider(limit_of(meeting, laws.model()));
       meets = true;
+    };
+    for (const int wall : walls) meet(meeting_with_wall(laws, present[a], a, wall));
+    for (int b = laws.walls() - 1; b >= a; --b) {
+      if (present[b].count > (a == b ? 1 : 0)) meet(meeting_of(laws, present, a, b));
     }
     if (meets && laws.model().law == ContactLaw::hertz) {
       const double rayleigh = laws.rayleigh_factor(a) * present[a].rayleigh;

@@ -3,6 +3,7 @@
 // window.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "dem_server/backends/native/contact_law.hpp"
@@ -15,7 +16,8 @@ struct StepLimit {
   std::string reason;  ///< what sets it, e.g. "a tenth of the contact time of [glass, walls], 2 ms"
 };
 
-/// Over all pairs that can meet (`walls`: there are some) the smallest of
+/// Over all pairs that can meet (`walls`: the materials of the walls there are, the walls' own or
+/// others) the smallest of
 ///  - linear: a tenth of the contact time π sqrt(m*/k). Undamped, hence never longer than the
 ///  damped
 ///    one; k is the larger of k_n and what the spin feels: with friction 7/2 k_t (the tangential
@@ -28,7 +30,8 @@ struct StepLimit {
 ///    fastest of both materials, shortened as above by the tangential and rolling springs.
 /// The particles of one material must have one density. Throws ConfigError that names a pair that
 /// can meet but has no law, or whose attraction by `sjkr` is stiffer than its linear spring.
-StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles, bool walls);
+StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
+                     std::span<const int> walls);
 
 /// Throws ConfigError with the limit, the contact that sets it and a value that passes if
 /// `time_step` [s] is longer.

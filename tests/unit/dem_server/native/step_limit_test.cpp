@@ -1,6 +1,7 @@
 // The longest sub-step: closed forms of the times of contact, and what is refused.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,6 +13,9 @@ namespace fluxpact {
 namespace {
 
 using std::numbers::pi;
+
+/// The walls' own material comes after the one of the particles.
+constexpr std::array<int, 1> at_walls{1};
 
 ParticleSettings glass(ContactLaw law, double friction) {
   ParticleSettings settings;
@@ -45,22 +49,22 @@ double mass(double radius) { return sphere_mass(radius, 2500); }
 TEST(StepLimit, linear_is_a_tenth_of_the_shortest_time_of_contact) {
   const double pair = 0.1 * pi * std::sqrt(0.5 * mass(1e-3) / 1000);
   const ContactLaws smooth(glass(ContactLaw::linear, 0));
-  const StepLimit limit = step_limit(smooth, spheres(1), true);
+  const StepLimit limit = step_limit(smooth, spheres(1), at_walls);
   EXPECT_NEAR(limit.longest / pair, 1, 1e-14);
   expect_contains(limit.reason, "[glass, glass]");
   // One sphere alone meets only walls.
   ParticleState alone;
   add_sphere(alone, {0, 0, 0}, {0, 0, 0}, 1e-3, 2500);
-  EXPECT_NEAR(step_limit(smooth, alone, true).longest / (pair * std::sqrt(2)), 1, 1e-14);
-  EXPECT_TRUE(std::isinf(step_limit(smooth, alone, false).longest));
+  EXPECT_NEAR(step_limit(smooth, alone, at_walls).longest / (pair * std::sqrt(2)), 1, 1e-14);
+  EXPECT_TRUE(std::isinf(step_limit(smooth, alone, {}).longest));
   // 7/2 k_t of two rolling spheres; with a rolling spring of 2.25 k μ_r² R*² more.
   ParticleSettings rough = glass(ContactLaw::linear, 0.3);
   for (PairSettings& each : rough.contact.pairs) each.tangential_stiffness = 800;
-  EXPECT_NEAR(step_limit(ContactLaws(rough), spheres(1), true).longest / pair, std::sqrt(1 / 2.8),
-              1e-14);
+  EXPECT_NEAR(step_limit(ContactLaws(rough), spheres(1), at_walls).longest / pair,
+              std::sqrt(1 / 2.8), 1e-14);
   rough.contact.rolling = RollingLaw::spring_dashpot;
   for (PairSettings& each : rough.contact.pairs) each.rolling_friction = 0.4;
-  EXPECT_NEAR(step_limit(ContactLaws(rough), spheres(1), true).longest / pair,
+  EXPECT_NEAR(step_limit(ContactLaws(rough), spheres(1), at_walls).longest / pair,
               std::sqrt(1 / (2.8 + 2.5 * 2.25 * 0.16)), 1e-14);
 }
 
@@ -69,7 +73,7 @@ TEST(StepLimit, hertz_is_a_fifth_of_the_rayleigh_time_at_low_speed) {
   const double shear = 5e6 / 2.5;
   const double rayleigh = pi * 1e-3 * std::sqrt(2500 / shear) / (0.1631 * 0.25 + 0.8766);
   for (const double speed : {0.0, 1e-3}) {
-    const StepLimit limit = step_limit(laws, spheres(speed), true);
+    const StepLimit limit = step_limit(laws, spheres(speed), at_walls);
     EXPECT_NEAR(limit.longest, 0.2 * rayleigh, 1e-14 * rayleigh);
     expect_contains(limit.reason, "a fifth of the Rayleigh time of glass");
   }
@@ -80,12 +84,13 @@ TEST(StepLimit, hertz_is_a_tenth_of_the_time_of_contact_at_high_speed) {
   const double effective = 5e6 / (2 * (1 - 0.0625));
   const double m = 0.5 * mass(1e-3);
   const double contact = 2.868 * std::pow(m * m / (0.5e-3 * effective * effective * 20), 0.2);
-  const StepLimit limit = step_limit(ContactLaws(glass(ContactLaw::hertz, 0)), spheres(10), true);
+  const StepLimit limit =
+      step_limit(ContactLaws(glass(ContactLaw::hertz, 0)), spheres(10), at_walls);
   EXPECT_NEAR(limit.longest, 0.1 * contact, 1e-12 * contact);
   expect_contains(limit.reason, "[glass, glass] at 20 m/s");
   // With friction the tangential spring is stiffer: 7/2 of 8 G*/(2 E*) = 2 (1 - ν)/(2 - ν).
   const double ratio = 3.5 * 2 * 0.75 / 1.75;
-  EXPECT_NEAR(step_limit(ContactLaws(glass(ContactLaw::hertz, 0.5)), spheres(10), true).longest,
+  EXPECT_NEAR(step_limit(ContactLaws(glass(ContactLaw::hertz, 0.5)), spheres(10), at_walls).longest,
               0.1 * contact / std::sqrt(ratio), 1e-12 * contact);
 }
 
@@ -103,10 +108,10 @@ TEST(ContactLaws, refuse_cohesion_that_the_spring_cannot_bear) {
   settings.contact.cohesion = CohesionLaw::sjkr;
   // The pull of the larger sphere on the wall: 2 π R* c = 1000 N/m at c = 79577 J/m³.
   for (PairSettings& pair : settings.contact.pairs) pair.cohesion_energy_density = 79000;
-  EXPECT_NO_THROW(step_limit(ContactLaws(settings), spheres(0), true));
+  EXPECT_NO_THROW(step_limit(ContactLaws(settings), spheres(0), at_walls));
   for (PairSettings& pair : settings.contact.pairs) pair.cohesion_energy_density = 80000;
   const std::string text =
-      message_of<ConfigError>([&] { step_limit(ContactLaws(settings), spheres(0), true); });
+      message_of<ConfigError>([&] { step_limit(ContactLaws(settings), spheres(0), at_walls); });
   expect_contains(text, "[glass, walls]");
   expect_contains(text, "normal_stiffness");
 }

@@ -105,7 +105,7 @@ class NativeEngine final : public ParticleEngine {
   void check(int bodies, double time_step, int sub_step, int sub_steps) const;
   void present(int bodies);
   void save_springs();
-  int threads_for(const Blocks& blocks) const { return std::clamp(threads_, 1, blocks.count()); }
+  int threads_for(const Blocks& blocks) const { return std::clamp(threads_, 1, std::max(1, blocks.count())); }
 
   Domain domain_;
   ContactLaws laws_;

@@ -2,14 +2,18 @@
 
 #include <cmath>
 
-#include "proto/base/errors.hpp"
-
 namespace fluxpact {
 namespace {
 
-/// The side of the box on which a boundary face lies: its outward axis, if its centre is on that
-/// plane.
-int side_of(const Domain& domain, const Mesh& mesh, int face) {
+bool is_pressure(const Scene& scene, const std::string& patch) {
+  const auto boundary = scene.fluid.boundaries.find(patch);
+  return boundary != scene.fluid.boundaries.end() &&
+         boundary->second.type == BoundaryType::pressure;
+}
+
+}  // namespace
+
+int side_of_face(const Domain& domain, const Mesh& mesh, int face) {
   int axis = 0;
   const Vector3& area = mesh.face_areas[face];
   area.cwiseAbs().maxCoeff(&axis);
@@ -24,13 +28,16 @@ int side_of(const Domain& domain, const Mesh& mesh, int face) {
   return side;
 }
 
-bool is_pressure(const Scene& scene, const std::string& patch) {
-  const auto boundary = scene.fluid.boundaries.find(patch);
-  return boundary != scene.fluid.boundaries.end() &&
-         boundary->second.type == BoundaryType::pressure;
+std::vector<int> faces_off_the_box(const Scene& scene, const Mesh& mesh, const Domain& domain) {
+  std::vector<int> faces;
+  for (const Patch& patch : mesh.patches) {
+    if (is_pressure(scene, patch.name)) continue;
+    for (int face = patch.first; face < patch.first + patch.size; ++face) {
+      if (side_of_face(domain, mesh, face) < 0) faces.push_back(face);
+    }
+  }
+  return faces;
 }
-
-}  // namespace
 
 const char* side_name(int side) {
   constexpr std::array<const char*, 6> names{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
@@ -47,16 +54,8 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
   only_pressure.fill(true);
   for (const Patch& patch : mesh.patches) {
     for (int face = patch.first; face < patch.first + patch.size; ++face) {
-      const int side = side_of(domain, mesh, face);
-      if (side < 0 && scene.particles.insertion.empty()) continue;  // nobody meets the walls
-      if (side < 0) {
-        const Vector3& at = mesh.face_centres[face];
-        throw ConfigError(
-            "particles.walls: patch {} has a face at ({:.6g}, {:.6g}, {:.6g}) m off the outer box "
-            "of the mesh; the particle walls are the sides of a box, so use a box mesh, or a fluid "
-            "without particles (interphase.voidage: prescribed)",
-            patch.name, at.x(), at.y(), at.z());
-      }
+      const int side = side_of_face(domain, mesh, face);
+      if (side < 0) continue;  // for Walls
       only_pressure[side] = only_pressure[side] && is_pressure(scene, patch.name);
     }
   }

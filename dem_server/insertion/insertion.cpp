@@ -70,11 +70,11 @@ std::vector<Vector3> pack(const Entry& entry, const PackingBox& box) {
   throw ConfigError(
       "particles.insertion entry {}: {} spheres of {:.4g} m fill {:.3f} of the region of {:.4g} x "
       "{:.4g} "
-      "x {:.4g} m, which a random packing does not reach; {} fit, a fraction of {:.3f}: lower "
+      "x {:.4g} m, which a random packing does not reach{}; {} fit, a fraction of {:.3f}: lower "
       "`count` or "
       "enlarge `within`",
       entry.number, settings.count, diameter, settings.count * share, size.x(), size.y(), size.z(),
-      fits, fits * share);
+      box.room == nullptr ? "" : " between the walls in it", fits, fits * share);
 }
 
 /// A cubic lattice from the lower corner: the first sphere touches the sides, or lies half a
@@ -108,7 +108,13 @@ std::vector<Vector3> lattice(const Entry& entry, const PackingBox& box) {
   return centres;
 }
 
-std::vector<ListedParticle> placed(const Entry& entry, const Domain& domain) {
+/// The centres at which a sphere is clear of the walls in the room.
+std::vector<Vector3> fitting(std::vector<Vector3> centres, const Room& room, double diameter) {
+  std::erase_if(centres, [&](const Vector3& x) { return !room.fits(x, 0.5 * diameter); });
+  return centres;
+}
+
+std::vector<ListedParticle> placed(const Entry& entry, const Domain& domain, const Room& room) {
   if (entry.settings.type == InsertionType::file) {
     std::vector<ListedParticle> listed = read_particles(entry.settings.path);
     for (ListedParticle& particle : listed) {
@@ -116,9 +122,12 @@ std::vector<ListedParticle> placed(const Entry& entry, const Domain& domain) {
     }
     return listed;
   }
-  const PackingBox box = box_of(entry, domain);
+  PackingBox box = box_of(entry, domain);
+  if (!room.unbounded()) box.room = &room;
   const std::vector<Vector3> centres =
-      entry.settings.type == InsertionType::packing ? pack(entry, box) : lattice(entry, box);
+      entry.settings.type == InsertionType::packing
+          ? pack(entry, box)
+          : fitting(lattice(entry, box), room, entry.settings.diameter);
   std::vector<ListedParticle> particles;
   particles.reserve(centres.size());
   for (const Vector3& centre : centres) {
@@ -147,6 +156,7 @@ std::vector<std::string> material_names(const ParticleSettings& settings) {
 
 ParticleState insert_particles(const Scene& scene, const Mesh& mesh) {
   const Domain domain = particle_domain(scene, mesh);
+  const Room room(scene, mesh);
   const std::vector<std::string> names = material_names(scene.particles);
   ParticleState state;
   std::vector<int> entry_of;
@@ -154,7 +164,7 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh) {
     const Entry entry{settings, static_cast<int>(&settings - scene.particles.insertion.data()) + 1};
     const int material = material_index(entry, names);
     const double density = scene.particles.materials.at(settings.material).density;
-    for (const ListedParticle& particle : placed(entry, domain)) {
+    for (const ListedParticle& particle : placed(entry, domain, room)) {
       state.id.push_back(state.size() + 1);
       state.position.push_back(particle.position);
       state.velocity.push_back(particle.velocity);
@@ -166,6 +176,7 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh) {
     }
   }
   check_placement(state, entry_of, domain);
+  check_walls(state, entry_of, room);
   return state;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dem_server/backends/domain.hpp"
+#include "dem_server/walls/room.hpp"
 
 namespace fluxpact {
 
@@ -15,6 +16,7 @@ struct PackingBox {
   Vector3 lower;  ///< [m]
   Vector3 upper;  ///< [m]
   std::array<bool, 3> periodic{};
+  const Room* room = nullptr;  ///< the walls within the box that hold them, too; nullptr: none
 
   double volume() const { return (upper - lower).prod(); }
 };
@@ -29,7 +31,7 @@ inline constexpr double packing_overlap = 1e-3;
 /// at once, and pushes overlapping pairs apart, one after another, until none is left (the
 /// projection of Jakobsen, "Advanced character physics", GDC 2001, section 3, over-relaxed and
 /// without velocities). Finds packings of up to about 0.62, between walls 20 diameters apart 0.60,
-/// in narrower boxes less.
+/// in narrower boxes less. Walls of a Room push likewise.
 std::optional<std::vector<Vector3>> random_packing(const PackingBox& box, int count,
                                                    double diameter, std::uint64_t seed);
 

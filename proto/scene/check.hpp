@@ -13,4 +13,7 @@ void check_scene(const Scene& scene, Findings& findings);
 /// The part of it for fluid.scalars and fluid.turbulence.
 void check_scalars(const Scene& scene, Findings& findings);
 
+/// The part of it for particles.surfaces.
+void check_surfaces(const Scene& scene, Findings& findings);
+
 }  // namespace fluxpact

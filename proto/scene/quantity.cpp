@@ -40,6 +40,9 @@ constexpr auto suffixes = std::to_array<Suffix>({
     {"m2/s", Dimension::diffusivity, 0},
     {"W/(m.K)", Dimension::conductivity, 0},
     {"J/(kg.K)", Dimension::heat_capacity, 0},
+    {"Hz", Dimension::frequency, 0},
+    {"kHz", Dimension::frequency, 3},
+    {"rad/s", Dimension::angular_velocity, 0},
 });
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -22,6 +22,8 @@ enum class Dimension {
   diffusivity,
   conductivity,
   heat_capacity,
+  frequency,
+  angular_velocity,
 };
 
 /// The SI unit in which numbers without a suffix are taken, e.g. "m/s"; empty for Dimension::none.

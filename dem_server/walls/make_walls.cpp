@@ -150,14 +150,8 @@ Walls make_walls(const Scene& scene, const Mesh& mesh) {
     if (settings.type != SurfaceType::stl) continue;
     const TriangleSurface triangles = read_stl(settings.path, settings.scale);
     if (settings.side != SurfaceSide::both) {
-      const SurfaceQuality quality = measure_surface(triangles);
-      if (!quality.closed()) {
-        throw ConfigError(
-            "particles.surfaces.{}.side: {} is not closed ({} open edges, {} with more than two "
-            "triangles, {} whose triangles point to different sides), so nothing is inside or "
-            "outside; mend it, or use `side: both`",
-            name, settings.path, quality.open_edges, quality.crowded_edges, quality.turned_edges);
-      }
+      refuse_if_open("particles.surfaces." + name + ".side", settings.path,
+                     measure_surface(triangles));
     }
     maker.add_triangles(name, settings, triangles, settings.path);
   }

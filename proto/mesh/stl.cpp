@@ -35,6 +35,17 @@ std::int64_t binary_count(std::string_view bytes) {
   return bytes.size() == first_triangle + triangle_size * count ? std::int64_t{count} : -1;
 }
 
+/// A file that is not as long as its count of triangles says would be read as text, of which a
+/// binary file has bytes that no text has.
+void refuse_cut_binary(std::string_view bytes, const std::string& path) {
+  if (bytes.size() < first_triangle || bytes.find('\0') == std::string_view::npos) return;
+  const std::size_t count = value_at<std::uint32_t>(bytes, header_size);
+  throw ConfigError(
+      "{}: neither an ascii STL file nor a whole binary one: its count of {} triangles makes {} "
+      "bytes, but it has {}; copy or export it anew",
+      path, count, first_triangle + triangle_size * count, bytes.size());
+}
+
 void add_triangle(TriangleSurface& surface) {
   const int last = static_cast<int>(surface.points.size());
   surface.triangles.push_back({last - 3, last - 2, last - 1});
@@ -91,7 +102,8 @@ class Words {
     const bool tiny = error == std::errc::result_out_of_range && word.find('-') != word.npos;
     if (tiny && word.find("e-") != word.npos) return 0;  // 1e-320: some programs write such zeros
     if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) {
-      throw ConfigError("{}:{}: `{}` is not a finite number", path_, line_, word.substr(0, 40));
+      throw ConfigError("{}:{}: `{}` is not a finite number{}", path_, line_, word.substr(0, 40),
+                        word.empty() ? "; the file ends too early" : "");
     }
     return value;
   }
@@ -142,10 +154,8 @@ TriangleSurface read_ascii(std::string_view text, const std::string& path) {
       inside = !inside;
       words.skip_line();  // the name
     } else {
-      throw ConfigError(
-          "{}:{}: `{}` where `{}` is expected; this is neither an ascii STL file nor a binary one, "
-          "whose length its count of triangles tells",
-          path, words.line(), word.substr(0, 40), inside ? "facet` or `endsolid" : "solid");
+      throw ConfigError("{}:{}: `{}` where `{}` is expected; is this an STL file?", path,
+                        words.line(), word.substr(0, 40), inside ? "facet` or `endsolid" : "solid");
     }
   }
   if (inside) throw ConfigError("{}:{}: `endsolid` is missing", path, words.line());
@@ -177,6 +187,7 @@ TriangleSurface read_stl(const std::filesystem::path& path, double scale) {
   }
   const std::string bytes = read_file(path);
   const std::int64_t count = binary_count(bytes);
+  if (count < 0) refuse_cut_binary(bytes, name);
   TriangleSurface surface = count >= 0 ? read_binary(bytes, count, name) : read_ascii(bytes, name);
   if (surface.triangles.empty()) throw ConfigError("{}: no triangle in it", name);
   double largest = 0;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "proto/base/errors.hpp"
+
 namespace fluxpact {
 namespace {
 
@@ -140,6 +142,15 @@ SurfaceQuality measure_surface(const TriangleSurface& surface) {
     quality.shortest_edge = std::min(quality.shortest_edge, along.norm());
   }
   return quality;
+}
+
+void refuse_if_open(const std::string& key, const std::string& source,
+                    const SurfaceQuality& quality) {
+  if (quality.closed()) return;
+  throw ConfigError(
+      "{}: {} is not closed ({} open edges, {} with more than two triangles, {} whose triangles "
+      "point to different sides), so nothing is inside or outside; mend it, or use `side: both`",
+      key, source, quality.open_edges, quality.crowded_edges, quality.turned_edges);
 }
 
 double enclosed_volume(const TriangleSurface& surface) {

@@ -58,6 +58,11 @@ struct SurfaceQuality {
 
 SurfaceQuality measure_surface(const TriangleSurface& surface);
 
+/// Throws ConfigError that begins with `key` and names `source` and its faults if the surface is
+/// not closed.
+void refuse_if_open(const std::string& key, const std::string& source,
+                    const SurfaceQuality& quality);
+
 /// The volume that a closed surface holds [m³]; negative if the triangles point inwards.
 double enclosed_volume(const TriangleSurface& surface);
 

@@ -79,6 +79,7 @@ void describe(Visit& visit, SurfaceSettings& surface) {
   const bool round = cone || surface.type == SurfaceType::cylinder;
   visit({.name = "material",
          .text = TextRule::name,
+         .otherwise = "`walls`",
          .meaning = "One of `particles.materials`, or `walls`: chooses the contact law."},
         surface.material);
   visit({.name = "point",
@@ -106,7 +107,7 @@ void describe(Visit& visit, SurfaceSettings& surface) {
          .required = true,
          .applies = round,
          .only_with = "type: cylinder | cone",
-         .meaning = "Of the cylinder, or of the cone at `point`."},
+         .meaning = "Of the cylinder, or of the cone at `point`, where it may be 0."},
         surface.radius);
   visit({.name = "end_radius",
          .dimension = Dimension::length,

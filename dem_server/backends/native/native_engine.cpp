@@ -391,7 +391,7 @@ void NativeEngine::rollback() {
 
 std::unique_ptr<ParticleEngine> make_native_engine(const Scene& scene, const Mesh& mesh,
                                                    ParticleState initial) {
-  refuse_surfaces(make_walls(scene, mesh));
+  if (initial.size() > 0) refuse_surfaces(make_walls(scene, mesh));
   return std::make_unique<NativeEngine>(scene, mesh, std::move(initial));
 }
 

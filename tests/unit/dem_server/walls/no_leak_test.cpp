@@ -1,4 +1,4 @@
-// A part of tests/verification/dem/wall_leaks.cpp that fits into a unit test, and what is noticed
+// A part of tests/verification/walls/leaks_test.cpp that fits into a unit test, and what is noticed
 // of a sphere that is pressed through all the same.
 #include "tests/unit/dem_server/walls/impacts.hpp"
 

@@ -96,7 +96,7 @@ class Walls {
   /// Where a sphere [m] touches its elements: distance below its radius. One touch for a face, edge
   /// or corner that is the nearest of its neighbourhood; a face hides its edges and corners.
   /// Ascending by distance. Returns their number, or -1 if there are more than `out` holds
-  /// (`most_wall_touches` always suffice in practice; less is an error of the scene).
+  /// (`most_wall_touches` suffice but for a sphere that is wedged in on nearly all sides).
   int touches(const Vector3& position, double radius, std::span<const int> elements,
               std::span<WallTouch> out) const;
 

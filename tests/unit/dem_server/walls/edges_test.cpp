@@ -1,6 +1,7 @@
 // Which of the faces, edges and corners around a sphere count as touches.
 #include <algorithm>
 
+#include "dem_server/walls/sheet.hpp"
 #include "tests/unit/dem_server/walls/surfaces.hpp"
 
 namespace fluxpact {
@@ -149,6 +150,35 @@ TEST(WallEdges, baffle_that_stands_on_a_wall_and_the_wall_are_two_touches) {
     EXPECT_NEAR(touches[0].normal.x(), std::copysign(1, x), 1e-14);
     EXPECT_NEAR(touches[1].distance, 0.07, 1e-14);
   }
+}
+
+TEST(WallEdges, side_of_a_spike_is_right_around_its_sharp_edges_and_its_tip) {
+  TriangleSurface spike;
+  spike.points = {{0, 0, 0}, {0.1, 0, 0}, {0.02, 0.05, 0}, {0.3, 0.1, 0.5}};
+  spike.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  ASSERT_GT(enclosed_volume(spike), 0);
+  const StlFile file(spike);
+  const Walls walls = walls_with(file.surface());
+  const Facets& facets = walls.facets();
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int by_vertex = 0;
+  for (int n = 0; n < 20000; ++n) {
+    // About a point of an edge, or about a corner.
+    const Vector3& a = spike.points[random() % 4];
+    const Vector3& b = spike.points[random() % 4];
+    const Vector3 x =
+        a + uniform(random) * (b - a) + 0.01 * uniform(random) * random_direction(random);
+    double least = -1;  // distance from the planes of its faces: negative inside
+    for (const Facet& facet : facets.facets) {
+      least = std::max(least, facet.normal.dot(x - facet.corner));
+    }
+    if (std::abs(least) < 1e-9) continue;  // on it, as far as rounding knows
+    const NearestFacet nearest = nearest_in(walls[0].tree, facets, 0, x);
+    by_vertex += nearest.point.part == FacetPart::vertex ? 1 : 0;
+    ASSERT_EQ(height(facets, nearest, x) < 0, least < 0) << x.transpose();
+  }
+  EXPECT_GT(by_vertex, 1000);
 }
 
 TEST(WallEdges, sphere_far_larger_than_the_triangles_has_one_touch) {

@@ -24,6 +24,10 @@ enum class Dimension {
   heat_capacity,
   frequency,
   angular_velocity,
+  energy_density,
+  surface_energy,
+  volume,
+  angle,
 };
 
 /// The SI unit in which numbers without a suffix are taken, e.g. "m/s"; empty for Dimension::none.

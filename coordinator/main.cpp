@@ -9,6 +9,7 @@
 #include "coordinator/scene/load_mesh.hpp"
 #include "coordinator/scene/load_scene.hpp"
 #include "coordinator/scene/mesh_report.hpp"
+#include "coordinator/scene/surface_report.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
 #include "proto/scene/read_scene.hpp"
@@ -20,10 +21,12 @@ using namespace fluxpact;
 void check_scene(const RunOptions& options) {
   const Scene scene = load_scene(options.scene, options.overrides);
   const Mesh mesh = load_mesh(scene);
+  const std::vector<std::string> surfaces = surface_lines(scene);
   fmt::print("{}: fine; {} cells, {} windows of {} s, {} sub-steps in each\n",
              options.scene.string(), mesh.cells(), windows(scene), scene.coupling.window,
              sub_steps(scene));
   fmt::print("{}", mesh_report(scene, mesh));
+  for (const std::string& line : surfaces) fmt::print("{}\n", line);
 }
 
 int dispatch(int argc, char** argv) {

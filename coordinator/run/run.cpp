@@ -13,6 +13,7 @@
 #include "coordinator/scene/load_mesh.hpp"
 #include "coordinator/scene/load_scene.hpp"
 #include "coordinator/scene/mesh_report.hpp"
+#include "coordinator/scene/surface_report.hpp"
 #include "coordinator/session/interrupt.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
@@ -186,8 +187,10 @@ class Run {
 ExitCode run_scene(const RunOptions& options) {
   const Scene scene = resolve_scene(options);
   const Mesh mesh = load_mesh(scene);
+  const std::vector<std::string> surfaces = surface_lines(scene);  // read before anything starts
   watch_for_interrupts();
   Run run(scene, mesh, options);
+  for (const std::string& line : surfaces) spdlog::info("{}", line);
   const ExitCode code = run.run();
   if (!options.quiet) fmt::print("{}", run.summary());
   if (code == ExitCode::interrupted)

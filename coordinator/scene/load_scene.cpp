@@ -48,6 +48,9 @@ void resolve_paths(Scene& scene, const std::filesystem::path& file) {
   };
   if (scene.fluid.mesh.polymesh) resolve(scene.fluid.mesh.polymesh->path);
   if (scene.fluid.mesh.gmsh) resolve(scene.fluid.mesh.gmsh->path);
+  for (auto& [name, surface] : scene.particles.surfaces) {
+    if (surface.type == SurfaceType::stl) resolve(surface.path);
+  }
   for (InsertionSettings& entry : scene.particles.insertion) {
     if (entry.type == InsertionType::file) resolve(entry.path);
   }

@@ -3,27 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "proto/base/errors.hpp"
-
 namespace fluxpact {
 namespace {
-
-/// The side of the box on which a boundary face lies: its outward axis, if its centre is on that
-/// plane.
-int side_of(const Domain& domain, const Mesh& mesh, int face) {
-  int axis = 0;
-  const Vector3& area = mesh.face_areas[face];
-  area.cwiseAbs().maxCoeff(&axis);
-  const int side = 2 * axis + (area[axis] > 0 ? 1 : 0);
-  // Round-off of a face centre is some 1e-16 of the coordinates; a cell is far thicker than 1e-9 of
-  // the box.
-  const double tolerance = 1e-9 * (domain.upper - domain.lower).norm();
-  if (std::abs(mesh.face_centres[face][axis] - domain.plane(side)) > tolerance ||
-      area.norm() - std::abs(area[axis]) > 1e-9 * area.norm()) {
-    return -1;
-  }
-  return side;
-}
 
 bool is_pressure(const Scene& scene, const std::string& patch) {
   const auto boundary = scene.fluid.boundaries.find(patch);
@@ -39,6 +20,32 @@ bool is_outflow(const Scene& scene, const std::string& patch) {
 
 }  // namespace
 
+int side_of_face(const Domain& domain, const Mesh& mesh, int face) {
+  int axis = 0;
+  const Vector3& area = mesh.face_areas[face];
+  area.cwiseAbs().maxCoeff(&axis);
+  const int side = 2 * axis + (area[axis] > 0 ? 1 : 0);
+  // Round-off of a face centre is some 1e-16 of the coordinates; a cell is far thicker than 1e-9 of
+  // the box.
+  const double tolerance = 1e-9 * (domain.upper - domain.lower).norm();
+  if (std::abs(mesh.face_centres[face][axis] - domain.plane(side)) > tolerance ||
+      area.norm() - std::abs(area[axis]) > 1e-9 * area.norm()) {
+    return -1;
+  }
+  return side;
+}
+
+std::vector<int> faces_off_the_box(const Scene& scene, const Mesh& mesh, const Domain& domain) {
+  std::vector<int> faces;
+  for (const Patch& patch : mesh.patches) {
+    if (is_pressure(scene, patch.name)) continue;
+    for (int face = patch.first; face < patch.first + patch.size; ++face) {
+      if (side_of_face(domain, mesh, face) < 0) faces.push_back(face);
+    }
+  }
+  return faces;
+}
+
 const char* side_name(int side) {
   constexpr std::array<const char*, 6> names{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
   return names.at(side);
@@ -53,18 +60,12 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
   std::array<bool, 6> only_pressure{};
   only_pressure.fill(true);
   std::array<bool, 6> only_outflow = only_pressure;
+  std::array<bool, 6> any_face{};
   for (const Patch& patch : mesh.patches) {
     for (int face = patch.first; face < patch.first + patch.size; ++face) {
-      const int side = side_of(domain, mesh, face);
-      if (side < 0 && !has_particles(scene)) continue;  // nobody meets the walls
-      if (side < 0) {
-        const Vector3& at = mesh.face_centres[face];
-        throw ConfigError(
-            "particles.walls: patch {} has a face at ({:.6g}, {:.6g}, {:.6g}) m off the outer box "
-            "of the mesh; the particle walls are the sides of a box, so use a box mesh, or a fluid "
-            "without particles (interphase.voidage: prescribed)",
-            patch.name, at.x(), at.y(), at.z());
-      }
+      const int side = side_of_face(domain, mesh, face);
+      if (side < 0) continue;  // for Walls
+      any_face[side] = true;
       only_pressure[side] = only_pressure[side] && is_pressure(scene, patch.name);
       only_outflow[side] = only_outflow[side] && is_outflow(scene, patch.name);
     }
@@ -72,7 +73,9 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
   for (int side = 0; side < 6; ++side) {
     const bool open = only_pressure[side] || scene.particles.walls == WallSource::none;
     domain.sides[side] = open ? SideKind::open : SideKind::wall;
-    domain.lets_out[side] = open && only_outflow[side];
+    // Behind a side without faces stands a wall of the mesh: who gets there is lost, not gone.
+    const bool free = any_face[side] || scene.particles.walls == WallSource::none;
+    domain.lets_out[side] = open && only_outflow[side] && free;
   }
   for (const Vector3& translation : mesh.translations) {
     int axis = 0;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "proto/base/vector.hpp"
 #include "proto/mesh/mesh.hpp"
@@ -33,12 +34,19 @@ struct Domain {
 const char* side_name(int side);
 
 /// The domain of the particles of a scene. Every side that is not periodic is a wall, so that no
-/// particle leaves through an inlet, except a side all of whose faces have a `pressure` boundary:
-/// that one is open. With `particles.walls: none` all of them are open. An open side lets particles
-/// out if all of its faces are of patches in `particles.outflow`, or if that is not given. Throws
-/// ConfigError if a boundary face of the mesh lies off its outer box (only boxes are known here)
-/// and the scene has particles.
+/// particle leaves through an inlet, except a side all of whose faces have a `pressure` boundary,
+/// or on which no face of the mesh lies at all: these are open. With `particles.walls: none` all of
+/// them are open. An open side lets particles out if all of its faces are of patches in
+/// `particles.outflow`, or if that is not given, and if it has faces at all or there are no walls.
+/// Boundary faces elsewhere are none of the domain's: see Walls.
 Domain particle_domain(const Scene& scene, const Mesh& mesh);
+
+/// The side of the box on which a boundary face of the mesh lies, or -1 if on none.
+int side_of_face(const Domain& domain, const Mesh& mesh, int face);
+
+/// The boundary faces that lie on no side of the box, in order, except those of patches with a
+/// `pressure` boundary.
+std::vector<int> faces_off_the_box(const Scene& scene, const Mesh& mesh, const Domain& domain);
 
 /// Position moved by whole periods into [lower, upper) along the periodic axes [m].
 Vector3 wrapped(const Domain& domain, Vector3 position);

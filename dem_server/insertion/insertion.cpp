@@ -61,10 +61,11 @@ std::vector<ListedParticle> pack(const Entry& entry, const PackingBox& box) {
   const Vector3 size = box.upper - box.lower;
   throw ConfigError(
       "{}: {} spheres of {:.4g} m fill {:.3f} of the region of {:.4g} x {:.4g} x {:.4g} m, which a "
-      "random packing does not reach; {} fit, a fraction of {:.3f}: ask for fewer, or enlarge "
+      "random packing does not reach{}; {} fit, a fraction of {:.3f}: ask for fewer, or enlarge "
       "`within`",
       name_of(entry), count, *std::max_element(diameters.begin(), diameters.end()), fraction(count),
-      size.x(), size.y(), size.z(), fits, fraction(fits));
+      size.x(), size.y(), size.z(), box.room == nullptr ? "" : " between the walls in it", fits,
+      fraction(fits));
 }
 
 /// A cubic lattice from the lower corner: the first sphere touches the sides, or lies half a
@@ -99,7 +100,7 @@ std::vector<Vector3> lattice(const Entry& entry, const PackingBox& box) {
 }
 
 std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const Domain& domain,
-                                   const Progress& alive) {
+                                   const Room& room, const Progress& alive) {
   const InsertionSettings& settings = entry.settings;
   if (settings.type == InsertionType::file) {
     std::vector<ListedParticle> particles = read_particles(settings.path, settings.group);
@@ -108,21 +109,33 @@ std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const
     }
     return particles;
   }
-  const PackingBox box = entry_box(name_of(entry), settings.within, domain);
+  PackingBox box = entry_box(name_of(entry), settings.within, domain);
+  if (!room.unbounded()) box.room = &room;
   if (settings.type == InsertionType::packing) return pack(entry, box);
   if (settings.type == InsertionType::settled) {
     return settled_bed(scene, name_of(entry), settings, box, domain, alive);
   }
-  const std::vector<Vector3> centres = lattice(entry, box);
+  std::vector<Vector3> centres = lattice(entry, box);
+  std::erase_if(centres, [&](const Vector3& x) { return !room.fits(x, 0.5 * settings.diameter); });
   return listed(centres, std::vector<double>(centres.size(), settings.diameter), settings.velocity);
 }
 
 /// Push apart whatever overlaps.
-void relax(const Domain& domain, const std::vector<int>& entry, ParticleState& state) {
+void relax(const Domain& domain, const Room& room, const std::vector<int>& entry,
+           ParticleState& state) {
   std::vector<double> diameters;
   for (const double radius : state.radius) diameters.push_back(2 * radius);
-  const PushedApart result = push_apart(domain, diameters, relaxed_overlap, state.position);
+  const PushedApart result = push_apart(domain, diameters, relaxed_overlap, state.position,
+                                        room.unbounded() ? nullptr : &room);
   if (result.done) return;
+  if (result.b < 0) {
+    throw ConfigError(
+        "particles.overlaps: relax: particle {} of particles.insertion entry {} still sticks into "
+        "the wall `{}` by {:.3g} of its diameter, {} is allowed: there is no room for so many; ask "
+        "for fewer, or enlarge the domain",
+        state.id[result.a], entry[result.a], room.nearest_wall(state.position[result.a]),
+        result.overlap, relaxed_overlap);
+  }
   throw ConfigError(
       "particles.overlaps: relax: particle {} of particles.insertion entry {} and particle {} of "
       "entry {} still overlap by {:.3g} of the smaller diameter, {} is allowed: there is no room "
@@ -151,6 +164,7 @@ std::vector<std::string> material_names(const ParticleSettings& settings) {
 
 ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progress& alive) {
   const Domain domain = particle_domain(scene, mesh);
+  const Room room(scene, mesh);
   const std::vector<std::string> names = material_names(scene.particles);
   ParticleState state;
   std::vector<int> entry_of;
@@ -158,7 +172,7 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progr
     const Entry entry{settings, static_cast<int>(&settings - scene.particles.insertion.data()) + 1};
     const int material = material_index(entry, names);
     const double density = scene.particles.materials.at(settings.material).density;
-    for (const ListedParticle& particle : placed(scene, entry, domain, alive)) {
+    for (const ListedParticle& particle : placed(scene, entry, domain, room, alive)) {
       state.id.push_back(state.size() + 1);
       state.position.push_back(particle.position);
       state.velocity.push_back(particle.velocity);
@@ -169,8 +183,9 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progr
       entry_of.push_back(entry.number);
     }
   }
-  if (scene.particles.overlaps == Overlaps::relax) relax(domain, entry_of, state);
+  if (scene.particles.overlaps == Overlaps::relax) relax(domain, room, entry_of, state);
   check_placement(state, entry_of, domain);
+  check_walls(state, entry_of, room);
   return state;
 }
 

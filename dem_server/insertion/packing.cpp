@@ -18,30 +18,18 @@ Domain domain_of(const PackingBox& box) {
   return domain;
 }
 
-/// One random place in each of about as many equal cells as there are spheres.
-std::vector<Vector3> scatter(const PackingBox& box, std::span<const double> diameters,
-                             std::uint64_t seed) {
-  const auto count = static_cast<std::int64_t>(diameters.size());
-  // The room of the centres, cut into at least `count` cells; every count/cells-th of them gets
-  // one.
-  Vector3 low = box.lower;
-  Vector3 room = box.upper - box.lower;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (box.periodic[axis]) continue;
-    const double smallest = *std::min_element(diameters.begin(), diameters.end());
-    low[axis] += 0.5 * smallest;
-    room[axis] = std::max(room[axis] - smallest, 0.0);
-  }
+/// A random place in every `cells`/`count`-th of at least `count` cells of about one shape.
+std::vector<Vector3> scatter_evenly(const Vector3& low, const Vector3& space, std::int64_t count,
+                                    UniformRandom& random) {
   std::array<int, 3> cells{1, 1, 1};
   while (static_cast<double>(cells[0]) * cells[1] * cells[2] < static_cast<double>(count)) {
     int widest = 0;
     for (int axis = 1; axis < 3; ++axis) {
-      if (room[axis] / cells[axis] > room[widest] / cells[widest]) widest = axis;
+      if (space[axis] / cells[axis] > space[widest] / cells[widest]) widest = axis;
     }
     ++cells[widest];
   }
   const std::int64_t total = static_cast<std::int64_t>(cells[0]) * cells[1] * cells[2];
-  UniformRandom random(seed);
   std::vector<Vector3> centres;
   for (std::int64_t s = 0; s < count; ++s) {
     const std::int64_t cell = s * total / count;
@@ -50,11 +38,51 @@ std::vector<Vector3> scatter(const PackingBox& box, std::span<const double> diam
     Vector3 place;
     for (int axis = 0; axis < 3; ++axis) {
       const double share = (static_cast<double>(at[axis]) + random.next()) / cells[axis];
-      place[axis] = low[axis] + room[axis] * share;
+      place[axis] = low[axis] + space[axis] * share;
     }
     centres.push_back(place);
   }
   return centres;
+}
+
+/// `count` places evenly spread over the part of the space where a sphere fits; none if there is
+/// next to no such part.
+std::vector<Vector3> scatter_in_room(const Room& room, const Vector3& low, const Vector3& space,
+                                     std::int64_t count, double radius, UniformRandom& random) {
+  constexpr double most_tries = 1e8;
+  std::vector<Vector3> fitting;
+  double tries = static_cast<double>(count);
+  while (tries < most_tries) {
+    fitting = scatter_evenly(low, space, static_cast<std::int64_t>(tries), random);
+    std::erase_if(fitting, [&](const Vector3& place) { return !room.fits(place, radius); });
+    const auto found = static_cast<double>(fitting.size());
+    if (found >= static_cast<double>(count)) break;
+    if (found == 0 && tries > 1e5) return {};
+    tries *= found > 0 ? std::max(1.3, 1.04 * static_cast<double>(count) / found) : 4.0;
+  }
+  const auto found = static_cast<std::int64_t>(fitting.size());
+  if (found < count) return {};
+  std::vector<Vector3> centres;
+  for (std::int64_t s = 0; s < count; ++s) centres.push_back(fitting[s * found / count]);
+  return centres;
+}
+
+/// One random place in each of about as many equal cells as there are spheres; nothing if the walls
+/// in the box leave none.
+std::vector<Vector3> scatter(const PackingBox& box, std::span<const double> diameters,
+                             std::uint64_t seed) {
+  const auto count = static_cast<std::int64_t>(diameters.size());
+  const double smallest = *std::min_element(diameters.begin(), diameters.end());
+  Vector3 low = box.lower;
+  Vector3 space = box.upper - box.lower;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.periodic[axis]) continue;
+    low[axis] += 0.5 * smallest;
+    space[axis] = std::max(space[axis] - smallest, 0.0);
+  }
+  UniformRandom random(seed);
+  if (box.room == nullptr) return scatter_evenly(low, space, count, random);
+  return scatter_in_room(*box.room, low, space, count, 0.5 * smallest, random);
 }
 
 bool has_room(const PackingBox& box, double diameter) {
@@ -84,7 +112,8 @@ std::optional<std::vector<Vector3>> random_packing(const PackingBox& box,
   const double densest = *smallest == *largest ? std::numbers::pi / std::sqrt(18.0) : 0.9;
   if (!has_room(box, *largest) || volume_of(diameters) > densest * box.volume()) return {};
   std::vector<Vector3> centres = scatter(box, diameters, seed);
-  if (!push_apart(domain_of(box), diameters, packing_overlap, centres).done) return {};
+  if (centres.empty()) return {};
+  if (!push_apart(domain_of(box), diameters, packing_overlap, centres, box.room).done) return {};
   return centres;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dem_server/backends/domain.hpp"
+#include "dem_server/walls/room.hpp"
 
 namespace fluxpact {
 
@@ -16,6 +17,7 @@ struct PackingBox {
   Vector3 lower;  ///< [m]
   Vector3 upper;  ///< [m]
   std::array<bool, 3> periodic{};
+  const Room* room = nullptr;  ///< the walls within the box that hold them, too; nullptr: none
 
   double volume() const { return (upper - lower).prod(); }
 };

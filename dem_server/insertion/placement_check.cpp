@@ -81,4 +81,18 @@ void check_placement(const ParticleState& particles, const std::vector<int>& ent
       most_overlap);
 }
 
+void check_walls(const ParticleState& particles, const std::vector<int>& entry, const Room& room) {
+  if (room.unbounded()) return;
+  for (int row = 0; row < particles.size(); ++row) {
+    const double radius = particles.radius[row];
+    const double clear = room.clearance(particles.position[row]);
+    if (clear >= radius - most_overlap * 2 * radius) continue;
+    const std::string wall = room.nearest_wall(particles.position[row]);
+    throw ConfigError(
+        "{} {} the wall `{}` by {:.3g} m; move it, or the wall (particles.surfaces, fluid.mesh)",
+        who(particles, entry, row), clear < 0 ? "is behind" : "sticks into", wall,
+        clear < 0 ? -clear : radius - clear);
+  }
+}
+
 }  // namespace fluxpact

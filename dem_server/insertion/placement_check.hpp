@@ -5,6 +5,7 @@
 
 #include "dem_server/backends/domain.hpp"
 #include "dem_server/backends/particle_engine.hpp"
+#include "dem_server/walls/room.hpp"
 
 namespace fluxpact {
 
@@ -14,5 +15,9 @@ namespace fluxpact {
 /// particle.
 void check_placement(const ParticleState& particles, const std::vector<int>& entry,
                      const Domain& domain);
+
+/// Likewise if a particle is on the wrong side of a wall in the room, or sticks into it by more
+/// than 10 % of its diameter.
+void check_walls(const ParticleState& particles, const std::vector<int>& entry, const Room& room);
 
 }  // namespace fluxpact

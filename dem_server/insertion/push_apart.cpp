@@ -33,9 +33,31 @@ struct Relaxation {
   std::vector<Pair> pairs;
   CellGrid grid;
   std::array<Vector3, 27> shifts;
+  const Room* room = nullptr;
+  std::vector<int> wall_first{};     // of each sphere, into wall_elements; one more at the end
+  std::vector<int> wall_elements{};  // of the room's walls
 };
 
-void keep_inside(const Relaxation& state, double diameter, Vector3& position) {
+/// Visit what a sphere touches of the walls in the room.
+template <class Visit>
+void visit_walls(const Relaxation& state, int sphere, const Visit& visit) {
+  if (state.wall_first.empty()) return;
+  const int first = state.wall_first[sphere];
+  const auto count = static_cast<std::size_t>(state.wall_first[sphere + 1] - first);
+  if (count == 0) return;
+  std::array<WallTouch, most_wall_touches> touches;
+  const int met = state.room->walls().touches(state.position[sphere], 0.5 * state.diameter[sphere],
+                                              {&state.wall_elements[first], count}, touches);
+  for (int k = 0; k < met; ++k) visit(touches[static_cast<std::size_t>(k)]);
+}
+
+void keep_inside(Relaxation& state, int sphere) {
+  const double diameter = state.diameter[sphere];
+  Vector3& position = state.position[sphere];
+  visit_walls(state, sphere, [&](const WallTouch& touch) {
+    const double aim = (0.5 + 0.25 * state.allowed) * diameter;
+    position += (aim - touch.distance) * touch.normal;
+  });
   for (int axis = 0; axis < 3; ++axis) {
     if (state.domain.periodic(axis)) continue;
     const int side = Domain::low_side(axis);
@@ -57,6 +79,23 @@ void reorder(const std::vector<int>& order, std::vector<T>& values) {
   values = std::move(sorted);
 }
 
+/// Spheres that a push took through a wall go back to where they came from; then what is near each.
+void list_walls(Relaxation& state) {
+  if (state.room == nullptr) return;
+  const bool first_time = state.listed_at.empty();
+  state.wall_elements.clear();
+  state.wall_first.assign(1, 0);
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    if (!first_time && state.room->clearance(state.position[i]) < 0) {
+      state.position[i] = state.listed_at[i];
+    }
+    // One sweep may move a sphere farther than the skin; the list is made anew after it.
+    const double reach = 0.5 * state.diameter[i] + state.mean + state.skin;
+    state.room->walls().nearby(state.position[i], reach, {}, state.wall_elements);
+    state.wall_first.push_back(static_cast<int>(state.wall_elements.size()));
+  }
+}
+
 void list_pairs(Relaxation& state) {
   for (Vector3& position : state.position) position = wrapped(state.domain, position);
   const int count = static_cast<int>(state.position.size());
@@ -66,6 +105,8 @@ void list_pairs(Relaxation& state) {
   reorder(state.grid.order(), state.position);
   reorder(state.grid.order(), state.diameter);
   reorder(state.grid.order(), state.sphere);
+  if (!state.listed_at.empty()) reorder(state.grid.order(), state.listed_at);
+  list_walls(state);
   state.listed_at = state.position;
   state.pairs.clear();
   for (int a = 0; a < count; ++a) {
@@ -108,8 +149,8 @@ double sweep(Relaxation& state) {
     const double share = size_b / (size_a + size_b);
     a -= push * share * apart;
     b += push * (1 - share) * apart;
-    keep_inside(state, size_a, a);
-    keep_inside(state, size_b, b);
+    keep_inside(state, pair.a);
+    keep_inside(state, pair.b);
   }
   return largest;
 }
@@ -133,6 +174,12 @@ PushedApart largest_overlap(const Relaxation& state) {
     if (overlap <= worst.overlap) continue;
     worst = {false, overlap, state.sphere[pair.a], state.sphere[pair.b]};
   }
+  for (int i = 0; i < static_cast<int>(state.position.size()); ++i) {
+    visit_walls(state, i, [&](const WallTouch& touch) {
+      const double overlap = 0.5 - touch.distance / state.diameter[i];
+      if (overlap > worst.overlap) worst = {false, overlap, state.sphere[i], -1};
+    });
+  }
   worst.done = worst.overlap <= state.allowed;
   return worst;
 }
@@ -140,14 +187,14 @@ PushedApart largest_overlap(const Relaxation& state) {
 }  // namespace
 
 PushedApart push_apart(const Domain& domain, std::span<const double> diameters, double allowed,
-                       std::vector<Vector3>& centres) {
+                       std::vector<Vector3>& centres, const Room* room) {
   if (centres.empty()) return {true};
-  Relaxation state{domain, allowed, 0, 0, centres, {}, {}, {}, {}, {}, shift_vectors(domain)};
+  Relaxation state{domain, allowed, 0, 0, centres, {}, {}, {}, {}, {}, shift_vectors(domain), room};
   state.diameter.assign(diameters.begin(), diameters.end());
   for (int i = 0; i < static_cast<int>(centres.size()); ++i) {
     state.sphere.push_back(i);
     state.mean += diameters[i] / static_cast<double>(centres.size());
-    keep_inside(state, diameters[i], state.position[i]);
+    keep_inside(state, i);
   }
   state.skin = skin_share * state.mean;
   list_pairs(state);

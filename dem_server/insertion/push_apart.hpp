@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem_server/backends/domain.hpp"
+#include "dem_server/walls/room.hpp"
 
 namespace fluxpact {
 
@@ -17,14 +18,15 @@ struct PushedApart {
   bool done = false;
   double overlap = 0;  ///< largest that is left, of the smaller diameter
   int a = -1;          ///< the pair that has it, -1: none
-  int b = -1;
+  int b = -1;          ///< -1: a wall of the room
 };
 
 /// Moves `centres` [m] until no two spheres overlap by more than `allowed` [of the smaller
 /// diameter] and each is wholly inside the walls of the domain; periodic sides wrap, open ones hold
 /// centres in. In a sweep over all pairs one pair moves its spheres by at most its overlap. Gives
-/// up after 4000 sweeps. The same bits for the same arguments.
+/// up after 4000 sweeps. The same bits for the same arguments. Walls of a room push likewise; a
+/// sphere that starts beyond one stays there.
 PushedApart push_apart(const Domain& domain, std::span<const double> diameters, double allowed,
-                       std::vector<Vector3>& centres);
+                       std::vector<Vector3>& centres, const Room* room = nullptr);
 
 }  // namespace fluxpact

@@ -206,7 +206,7 @@ void check_pair(const std::string& path, const PairSettings& pair,
 
 void check_pairs(const Scene& scene, Findings& findings) {
   if (!is_sound(findings, {"particles.materials", "particles.contact", "particles.walls",
-                           "particles.backend"})) {
+                           "particles.surfaces", "particles.backend"})) {
     return;
   }
   const ParticleSettings& particles = scene.particles;
@@ -223,7 +223,9 @@ void check_pairs(const Scene& scene, Findings& findings) {
     }
   }
   std::vector<std::string> partners = materials;
-  if (particles.walls == WallSource::from_mesh) {
+  if (particles.walls == WallSource::from_mesh ||
+      std::any_of(particles.surfaces.begin(), particles.surfaces.end(),
+                  [](const auto& entry) { return entry.second.material == walls; })) {
     partners.emplace_back(walls);
   }
   for (std::size_t i = 0; i < materials.size() && particles.backend == ParticleBackend::native;
@@ -320,6 +322,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_boundaries(scene, findings);
   check_scalars(scene, findings);
   check_pairs(scene, findings);
+  check_surfaces(scene, findings);
   check_contact_laws(scene, findings);
   check_insertion(scene, findings);
   check_interphase(scene, findings);

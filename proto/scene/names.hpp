@@ -175,6 +175,26 @@ inline constexpr auto enum_names<WallSource> = std::to_array<Named<WallSource>>(
     {WallSource::none, "none"},
 });
 template <>
+inline constexpr auto enum_names<MotionType> = std::to_array<Named<MotionType>>({
+    {MotionType::none, "none"},
+    {MotionType::translation, "translation"},
+    {MotionType::rotation, "rotation"},
+    {MotionType::vibration, "vibration"},
+});
+template <>
+inline constexpr auto enum_names<SurfaceType> = std::to_array<Named<SurfaceType>>({
+    {SurfaceType::plane, "plane"},
+    {SurfaceType::cylinder, "cylinder"},
+    {SurfaceType::cone, "cone"},
+    {SurfaceType::stl, "stl"},
+});
+template <>
+inline constexpr auto enum_names<SurfaceSide> = std::to_array<Named<SurfaceSide>>({
+    {SurfaceSide::both, "both"},
+    {SurfaceSide::inside, "inside"},
+    {SurfaceSide::outside, "outside"},
+});
+template <>
 inline constexpr auto enum_names<VoidageMap> = std::to_array<Named<VoidageMap>>({
     {VoidageMap::exact, "exact"},
     {VoidageMap::centroid, "centroid"},

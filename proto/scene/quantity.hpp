@@ -22,6 +22,8 @@ enum class Dimension {
   diffusivity,
   conductivity,
   heat_capacity,
+  frequency,
+  angular_velocity,
   energy_density,
   surface_energy,
   volume,

@@ -146,7 +146,7 @@ std::string unit_table() {
         Dimension::density, Dimension::pressure, Dimension::viscosity, Dimension::stiffness,
         Dimension::mass_flow, Dimension::diffusivity, Dimension::conductivity,
         Dimension::heat_capacity, Dimension::energy_density, Dimension::surface_energy,
-        Dimension::volume, Dimension::angle}) {
+        Dimension::volume, Dimension::angle, Dimension::frequency, Dimension::angular_velocity}) {
     rows += fmt::format("| {} | {} |\n", si_unit(dimension), unit_suffixes(dimension));
   }
   return rows;

@@ -338,6 +338,39 @@ enum class Overlaps { refuse, relax };
 
 enum class WallSource { from_mesh, none };
 
+enum class MotionType { none, translation, rotation, vibration };
+
+/// How a surface moves as a rigid body. It stands as drawn at time 0; a vibration swings about
+/// that place.
+struct MotionSettings {
+  MotionType type = MotionType::none;
+  Vector3 velocity{0, 0, 0};   ///< [m/s] translation
+  Vector3 point{0, 0, 0};      ///< [m] rotation: on the axis
+  Vector3 direction{0, 0, 0};  ///< rotation: of the axis, of any length
+  double rate = 0;             ///< [rad/s] rotation, right-handed about `direction`
+  Vector3 amplitude{0, 0, 0};  ///< [m] vibration
+  double frequency = 0;        ///< [Hz] vibration
+  double phase = 0;            ///< [rad] vibration
+};
+
+enum class SurfaceType { plane, cylinder, cone, stl };
+enum class SurfaceSide { both, inside, outside };
+
+/// A wall of the particles beside those of the mesh.
+struct SurfaceSettings {
+  SurfaceType type = SurfaceType::plane;
+  std::string material = "walls";        ///< in the pairs of particles.contact
+  Vector3 point{0, 0, 0};                ///< [m] plane: on it; cylinder, cone: start of the axis
+  Vector3 normal{0, 0, 0};               ///< plane: to the side of the particles, of any length
+  Vector3 direction{0, 0, 0};            ///< cylinder, cone: of the axis, of any length
+  double radius = 0;                     ///< [m] cylinder; cone: at `point`
+  double end_radius = 0;                 ///< [m] cone: at its end
+  double length = 0;                     ///< [m] along the axis; 0: an endless cylinder
+  SurfaceSide side = SurfaceSide::both;  ///< where the insertion may place particles
+  std::string path;                      ///< stl: absolute once load_scene has seen it
+  double scale = 1;                      ///< stl: [m] for one unit of the file
+  MotionSettings motion;
+};
 /// double: all numbers. mixed: positions in double, the rest of a particle and its contacts in
 /// float.
 enum class Precision { full, mixed };
@@ -353,6 +386,7 @@ struct ParticleSettings {
   std::map<std::string, MaterialSettings> materials;
   ContactSettings contact;
   WallSource walls = WallSource::from_mesh;
+  std::vector<std::pair<std::string, SurfaceSettings>> surfaces;
   std::vector<InsertionSettings> insertion;
   Overlaps overlaps = Overlaps::refuse;
   std::vector<InflowSettings> inflow;

@@ -7,6 +7,7 @@
 #include "proto/scene/key.hpp"
 #include "proto/scene/scene.hpp"
 #include "proto/scene/schema_insertion.hpp"
+#include "proto/scene/schema_surfaces.hpp"
 
 namespace fluxpact {
 
@@ -192,9 +193,14 @@ void describe(Visit& visit, ParticleSettings& particles) {
         particles.materials);
   visit({.name = "contact", .meaning = "Forces between touching particles, and walls."},
         particles.contact);
-  visit({.name = "walls",
-         .meaning = "What particles bounce off; `from_mesh`: the fluid's wall patches."},
-        particles.walls);
+  visit(
+      {.name = "walls",
+       .meaning = "What particles bounce off; `from_mesh`: the boundary of the mesh, except where "
+                  "patches with `type: pressure` let them out."},
+      particles.walls);
+  visit({.name = "surfaces",
+         .meaning = "Walls beside those of the mesh, at rest or moving, by names of your choice."},
+        particles.surfaces);
   visit({.name = "insertion", .meaning = "The particles at time 0; none: an empty domain."},
         particles.insertion);
   visit({.name = "overlaps",

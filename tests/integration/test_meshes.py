@@ -214,7 +214,7 @@ class MeshChecks(ProgramTest):
         scene["fluid"]["mesh"]["periodic"] = ["x"]
         self.assertIn("fluid.mesh.periodic: has no meaning here", self.check(scene, EXIT_USAGE))
 
-    def test_particles_need_a_box(self):
+    def test_kinematic_particles_need_a_box(self):
         scene = closed_box(*KINDS["tetrahedra"])
         scene["particles"] = {
             "backend": "kinematic",
@@ -224,7 +224,7 @@ class MeshChecks(ProgramTest):
         scene["fluid"]["mesh"] = {"gmsh": {"path": str(SOURCE / "configs/meshes/pipe.msh"), "scale": 1.0e-3}}
         scene["fluid"]["boundaries"] = {patch: {"type": "wall"} for patch in ("inlet", "outlet", "pipe")}
         _, stderr = self.run_scene(scene, expect=EXIT_USAGE)
-        for words in ("particles.walls: patch pipe has a face", "off the outer box of the mesh", "use a box mesh"):
+        for words in ("particles.backend: kinematic", "is off the outer box of the mesh", "use a box mesh"):
             self.assertIn(words, stderr)
 
 

@@ -60,10 +60,22 @@ class KinematicEngine final : public ParticleEngine {
   std::optional<ParticleState> before_exchange_;  ///< in a window in which some entered or left
 };
 
+/// Nothing would keep them inside.
+void refuse_other_than_box(const Scene& scene, const Mesh& mesh) {
+  const std::vector<int> faces = faces_off_the_box(scene, mesh, particle_domain(scene, mesh));
+  if (faces.empty()) return;
+  const Vector3& at = mesh.face_centres[faces.front()];
+  throw ConfigError(
+      "particles.backend: kinematic particles know the sides of a box only, and a face at ({:.6g}, "
+      "{:.6g}, {:.6g}) m is off the outer box of the mesh; use a box mesh, or the native backend",
+      at.x(), at.y(), at.z());
+}
+
 }  // namespace
 
 std::unique_ptr<ParticleEngine> make_kinematic_engine(const Scene& scene, const Mesh& mesh,
                                                       ParticleState initial) {
+  if (initial.size() > 0) refuse_other_than_box(scene, mesh);
   return std::make_unique<KinematicEngine>(scene, mesh, std::move(initial));
 }
 

@@ -11,10 +11,21 @@
 #include "dem_server/backends/native/soundness.hpp"
 #include "dem_server/backends/native/step_limit.hpp"
 #include "dem_server/backends/particle_rows.hpp"
+#include "dem_server/walls/walls.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
 namespace {
+
+/// The sub-step knows the sides of the box only.
+void refuse_surfaces(const Walls& walls) {
+  if (walls.empty()) return;
+  throw ConfigError(
+      "particles.surfaces: the native backend does not know walls beside the sides of a box yet "
+      "(here: `{}`); remove the surfaces, use a box mesh, or a fluid without particles "
+      "(interphase.voidage: prescribed)",
+      walls[0].name);
+}
 
 /// List pairs per particle against rebuilds: 0.15 diameters is near the best from a bed at rest to
 /// one that bubbles.
@@ -574,6 +585,7 @@ std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh
 
 std::unique_ptr<ParticleEngine> make_native_engine(const Scene& scene, const Mesh& mesh,
                                                    ParticleState initial) {
+  if (initial.size() > 0) refuse_surfaces(make_walls(scene, mesh));
   if (scene.particles.numerics.precision == Precision::mixed) {
     return make_engine<float>(scene, mesh, std::move(initial));
   }

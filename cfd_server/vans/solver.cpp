@@ -295,6 +295,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
     try {
       const Window step = inner_window(window, number, count);
       self.advance_step(*from, step, at_end, progress, to);
+      if (last) check_courant(problem, to, self.fields->boundary, window);
       self.carry(*from, to, step);
     } catch (const NumericsError& error) {
       self.refuse(window, count, solids, error);

@@ -143,10 +143,12 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
       if (progress) progress();
     }
   }
-  std::ranges::copy(solids.voidage, to.voidage.begin());
-  std::ranges::copy(fields->velocity, to.velocity.begin());
-  for (int cell = 0; cell < problem.stencil.cells; ++cell)
+#pragma omp parallel for schedule(static) num_threads(problem.stencil.threads)
+  for (int cell = 0; cell < problem.stencil.cells; ++cell) {
+    to.voidage[cell] = solids.voidage[cell];
+    to.velocity[cell] = fields->velocity[cell];
     to.pressure[cell] = fields->pressure[cell] + problem.conditions.level;
+  }
   to.step = window.length;
   if (problem.numerics.time == TimeScheme::bdf2) keep_level(from, time, to);
   ++report.inner_steps;

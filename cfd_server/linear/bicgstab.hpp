@@ -35,13 +35,17 @@ double dot(int threads, const std::vector<Value>& a, const std::vector<Value>& b
                              [&](int i) { return dot(a[i], b[i]); });
 }
 
-/// y += factor x
-template <class Value>
-void add(int threads, double factor, const std::vector<Value>& x, std::vector<Value>& y) {
-  const auto size = static_cast<int>(y.size());
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int i = 0; i < size; ++i) y[i] += factor * x[i];
-}
+/// Two sums from one pass over memory.
+struct TwoSums {
+  double first = 0;
+  double second = 0;
+
+  TwoSums& operator+=(const TwoSums& other) {
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
+};
 
 template <class Value>
 void precondition(int threads, std::span<const double> diagonal, const std::vector<Value>& x,
@@ -63,14 +67,16 @@ BicgstabOutcome solve_bicgstab(const Multiply& multiply, std::span<const double>
   using namespace bicgstab_detail;
   double norm = dot(threads, residual, residual);
   double rho = 0;
+  double shadow_squared = 0;
+  const auto size = static_cast<int>(residual.size());
   int iterations = 0;
   bool restart = true;
   while (!(norm <= target)) {
     if (iterations == most_iterations || !std::isfinite(norm)) return {iterations, norm, false};
     if (restart) {
-      work.shadow = residual;
-      work.direction = residual;
-      rho = norm;
+#pragma omp parallel for schedule(static) num_threads(threads)
+      for (int i = 0; i < size; ++i) work.shadow[i] = work.direction[i] = residual[i];
+      rho = shadow_squared = norm;
       restart = false;
     }
     precondition(threads, diagonal, work.direction, work.hat);
@@ -82,27 +88,32 @@ BicgstabOutcome solve_bicgstab(const Multiply& multiply, std::span<const double>
       continue;
     }
     const double alpha = rho / projection;
-    add(threads, alpha, work.hat, change);
-    add(threads, -alpha, work.product, residual);
-    precondition(threads, diagonal, residual, work.hat);
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int i = 0; i < size; ++i) {
+      change[i] += alpha * work.hat[i];
+      residual[i] -= alpha * work.product[i];
+      work.hat[i] = residual[i] / diagonal[i];
+    }
     multiply(work.hat, work.second);
-    const double squared = dot(threads, work.second, work.second);
-    const double omega = squared > 0 ? dot(threads, work.second, residual) / squared : 0.0;
-    add(threads, omega, work.hat, change);
-    add(threads, -omega, work.second, residual);
-    norm = dot(threads, residual, residual);
+    const TwoSums minimum = blocked_sum<TwoSums>(size, threads, [&](int i) {
+      return TwoSums{dot(work.second[i], work.second[i]), dot(work.second[i], residual[i])};
+    });
+    const double omega = minimum.first > 0 ? minimum.second / minimum.first : 0.0;
+    const TwoSums left = blocked_sum<TwoSums>(size, threads, [&](int i) {
+      change[i] += omega * work.hat[i];
+      residual[i] -= omega * work.second[i];
+      return TwoSums{dot(residual[i], residual[i]), dot(work.shadow[i], residual[i])};
+    });
+    norm = left.first;
     ++iterations;
-    const double rho_next = dot(threads, work.shadow, residual);
+    const double rho_next = left.second;
     // The recurrence breaks down when the residual turns orthogonal to the shadow: start it anew
     // from here.
-    if (std::abs(rho_next) <
-            1e-12 * std::sqrt(norm) * std::sqrt(dot(threads, work.shadow, work.shadow)) ||
-        omega == 0) {
+    if (std::abs(rho_next) < 1e-12 * std::sqrt(norm) * std::sqrt(shadow_squared) || omega == 0) {
       restart = true;
       continue;
     }
     const double beta = rho_next / rho * (alpha / omega);
-    const auto size = static_cast<int>(residual.size());
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int i = 0; i < size; ++i) {
       work.direction[i] = residual[i] + beta * (work.direction[i] - omega * work.product[i]);

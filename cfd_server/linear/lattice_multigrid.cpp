@@ -47,13 +47,7 @@ class LatticeMultigrid final : public PressureSolver {
       if (entry == 0) {
         std::ranges::copy(matrix.diagonal, values_.begin());
       } else {
-        std::ranges::fill(values_, 0.0);
-        double& sum = mean[static_cast<std::size_t>(entry - 1)];
-        for (int f = 0; f < stencil_.internal_faces; ++f) {
-          if (place_[f] < 0 || place_[f] % 4 != entry) continue;
-          values_[place_[f] / 4] -= matrix.coupling[f];
-          sum += matrix.coupling[f];
-        }
+        mean[static_cast<std::size_t>(entry - 1)] = -gather_couplings(matrix, entry);
       }
       HYPRE_StructMatrixSetBoxValues(matrix_, lower_.data(), upper_.data(), 1, &entry,
                                      values_.data());
@@ -82,6 +76,20 @@ class LatticeMultigrid final : public PressureSolver {
   }
 
  private:
+  /// Entry `entry` of each cell, from the faces that have their place there; returns the sum.
+  double gather_couplings(const PressureMatrix& matrix, int entry) {
+    return blocked_sum<double>(stencil_.cells, stencil_.threads, [&](int cell) {
+      double value = 0;
+      for (int side = stencil_.side_offsets[cell]; side < stencil_.side_offsets[cell + 1]; ++side) {
+        const int f = stencil_.side_face[side];
+        if (f < stencil_.internal_faces && place_[f] == 4 * cell + entry)
+          value -= matrix.coupling[f];
+      }
+      values_[cell] = value;
+      return value;
+    });
+  }
+
   /// Where each internal face's coupling stands among the four entries a cell: with the later of
   /// its two cells, or, across a wrapped period, with the first cell of the row, whose lower
   /// neighbour is the last.

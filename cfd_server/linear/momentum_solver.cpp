@@ -42,7 +42,8 @@ void MomentumSolver::multiply(const std::vector<Vector3>& x, std::vector<Vector3
 }
 
 int MomentumSolver::solve(double scale_squared) {
-  std::ranges::fill(change, Vector3::Zero());
+#pragma omp parallel for schedule(static) num_threads(stencil_.threads)
+  for (int cell = 0; cell < stencil_.cells; ++cell) change[cell] = Vector3::Zero();
   const BicgstabOutcome outcome = solve_bicgstab(
       [this](const std::vector<Vector3>& x, std::vector<Vector3>& y) { multiply(x, y); }, diagonal,
       stencil_.threads, tolerance * tolerance * scale_squared, most_iterations, residual, change,

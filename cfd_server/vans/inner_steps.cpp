@@ -30,6 +30,26 @@ bool has_fast_front(const Stencil& s, std::span<const double> old_voidage,
   return false;
 }
 
+/// How often a second the fluid in a cell is replaced [1/s].
+double renewal_rate(const FluidProblem& problem, const FluidState& state,
+                    const BoundaryValues& boundary, std::span<const double> voidage, int cell) {
+  const Stencil& s = problem.stencil;
+  double out = 0;
+  double in = 0;
+  for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
+    const int f = s.side_face[side];
+    double flux = s.side_sign[side] * state.face_flux[f];
+    if (f >= s.internal_faces &&
+        problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure) {
+      flux = problem.fluid.density * boundary.flux[f - s.internal_faces];
+    }
+    (flux > 0 ? out : in) += std::abs(flux);
+  }
+  const double held =
+      problem.fluid.density * s.volume[cell] * std::min(voidage[cell], state.voidage[cell]);
+  return std::max(in, out) / held;
+}
+
 }  // namespace
 
 double courant_number(const FluidProblem& problem, const FluidState& state,
@@ -37,21 +57,9 @@ double courant_number(const FluidProblem& problem, const FluidState& state,
                       double window) {
   const Stencil& s = problem.stencil;
   double largest = 0;
+#pragma omp parallel for schedule(static) num_threads(s.threads) reduction(max : largest)
   for (int cell = 0; cell < s.cells; ++cell) {
-    double out = 0;
-    double in = 0;
-    for (int side = s.side_offsets[cell]; side < s.side_offsets[cell + 1]; ++side) {
-      const int f = s.side_face[side];
-      double flux = s.side_sign[side] * state.face_flux[f];
-      if (f >= s.internal_faces &&
-          problem.conditions.kind[f - s.internal_faces] != FaceKind::pressure) {
-        flux = problem.fluid.density * boundary.flux[f - s.internal_faces];
-      }
-      (flux > 0 ? out : in) += std::abs(flux);
-    }
-    const double held =
-        problem.fluid.density * s.volume[cell] * std::min(voidage[cell], state.voidage[cell]);
-    largest = std::max(largest, std::max(in, out) / held);
+    largest = std::max(largest, renewal_rate(problem, state, boundary, voidage, cell));
   }
   return largest * window;
 }
@@ -83,6 +91,28 @@ int count_inner_steps(double courant, double limit, const Window& window) {
         window.step, courant, limit, most_inner_steps, window.length * limit / courant);
   }
   return std::max(1, static_cast<int>(count));
+}
+
+void check_courant(const FluidProblem& problem, const FluidState& state,
+                   const BoundaryValues& boundary, const Window& window) {
+  const double limit = problem.numerics.courant_limit;
+  const double courant = courant_number(problem, state, boundary, state.voidage, window.length);
+  if (courant <= most_inner_steps * limit) return;
+  const auto rate = [&](int cell) {
+    return renewal_rate(problem, state, boundary, state.voidage, cell);
+  };
+  int fastest = 0;
+  for (int cell = 1; cell < problem.stencil.cells; ++cell) {
+    if (rate(cell) > rate(fastest)) fastest = cell;
+  }
+  const Vector3& at = problem.stencil.centre[fastest];
+  throw NumericsError(
+      "fluid, step {}: velocity is {:.3g} m/s in cell {} at ({:.6g}, {:.6g}, {:.6g}), a Courant "
+      "number of {:.3g} over the window; with fluid.numerics.courant_limit {:.3g} the next window "
+      "could start from {:.3g} at most, in {} inner steps: the window diverged; shorten "
+      "coupling.window, or look at the drag and the shape of this cell",
+      window.step, state.velocity[fastest].norm(), fastest, at.x(), at.y(), at.z(), courant, limit,
+      most_inner_steps * limit, most_inner_steps);
 }
 
 TimeCoefficients choose_time_scheme(const FluidProblem& problem, const FluidState& old_state,

@@ -28,6 +28,11 @@ double stiffness_number(const FluidProblem& problem, const SolidsInput& solids, 
 /// be needed, with the window that would need one.
 int count_inner_steps(double courant, double limit, const Window& window);
 
+/// Throws NumericsError naming cell, place, value and limit if the next window, as long as this
+/// one, would need more than 1000 inner steps from `state`: what diverged must not be committed.
+void check_courant(const FluidProblem& problem, const FluidState& state,
+                   const BoundaryValues& boundary, const Window& window);
+
 /// Euler, or with `time: bdf2` the second-order coefficients where they can be used: not in the
 /// first step, not where a front of the voidage crosses half a cell or more (the extrapolation from
 /// two old levels would be of another place), and not where they would leave a cell without

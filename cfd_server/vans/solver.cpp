@@ -143,10 +143,12 @@ void VansSolver::Impl::advance_step(const FluidState& from, const Window& window
       if (progress) progress();
     }
   }
-  std::ranges::copy(solids.voidage, to.voidage.begin());
-  std::ranges::copy(fields->velocity, to.velocity.begin());
-  for (int cell = 0; cell < problem.stencil.cells; ++cell)
+#pragma omp parallel for schedule(static) num_threads(problem.stencil.threads)
+  for (int cell = 0; cell < problem.stencil.cells; ++cell) {
+    to.voidage[cell] = solids.voidage[cell];
+    to.velocity[cell] = fields->velocity[cell];
     to.pressure[cell] = fields->pressure[cell] + problem.conditions.level;
+  }
   to.step = window.length;
   if (problem.numerics.time == TimeScheme::bdf2) keep_level(from, time, to);
   ++report.inner_steps;
@@ -295,6 +297,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
     try {
       const Window step = inner_window(window, number, count);
       self.advance_step(*from, step, at_end, progress, to);
+      if (last) check_courant(problem, to, self.fields->boundary, window);
       self.carry(*from, to, step);
     } catch (const NumericsError& error) {
       self.refuse(window, count, solids, error);

@@ -147,6 +147,26 @@ TEST(Input, bad_values_are_refused_with_field_cell_value_and_step) {
   EXPECT_EQ(refuse([](Solids&) {}), "no error");
 }
 
+TEST(Transaction, a_state_from_which_no_window_could_go_on_is_refused_and_leaves_no_trace) {
+  const FluidCase c = small_bed();
+  VansSolver solver(c.scene, c.mesh);
+  solver.start(Solids(c.mesh).voidage);
+  run_window(solver, random_bed(c.mesh, 1), 1, 1e-3);
+  const FluidState before = solver.committed();
+  Solids thrown = random_bed(c.mesh, 2);
+  // Accelerates a cell of 1e-6 m3 to some 1e9 m/s: finite, and of no use.
+  thrown.source[50].x() = 1e6;
+  const std::string text = message_of([&] { solver.advance({2, 1e-3, 1e-3}, thrown.view(), {}); });
+  for (const char* part : {"fluid, step 2", "coupling.window", "velocity is", "m/s in cell",
+                           " at (", "courant_limit 5", "from 5e+03 at most"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+  EXPECT_THROW(solver.commit(), NumericsError);
+  EXPECT_EQ(solver.committed().velocity, before.velocity);
+  EXPECT_EQ(solver.committed().face_flux, before.face_flux);
+  solver.rollback();
+  run_window(solver, random_bed(c.mesh, 2), 2, 1e-3);
+}
+
 TEST(Boundaries, unfit_conditions_are_config_errors_that_name_the_patch) {
   const auto build = [](const auto& spoil) {
     FluidCase c = small_bed();

@@ -118,6 +118,8 @@ TEST_P(Extremes, are_finite_and_mass_exact_or_refused_by_name) {
     fmt::print("{}, {}: refused: {}\n", extreme.name, how.name, text);
     EXPECT_NE(text.find("step"), std::string::npos) << text;
     EXPECT_NE(text.find("coupling.window"), std::string::npos) << text;
+    // What is committed can be gone on from: the window that diverged is the one that is refused.
+    EXPECT_EQ(text.find("it would need more than"), std::string::npos) << text;
     // Hexahedra bear all of it; cells with few faces have limits of their own.
     EXPECT_TRUE(how.make == tetrahedra && extreme.may_be_refused) << text;
   }

@@ -12,7 +12,7 @@ namespace fluxpact {
 namespace {
 
 constexpr int count = 2000;
-constexpr double fraction = 0.2;
+constexpr double fraction = 0.1;
 constexpr double diameter = 2e-3;
 constexpr double thermal_speed = 0.1;  // m/s, sqrt(T / m)
 constexpr double stiffness = 3e4;
@@ -53,7 +53,7 @@ TEST(Gas, cools_by_the_law_of_haff) {
   const double side = diameter * std::cbrt(count * std::numbers::pi / 6 / fraction);
   const double g0 = (1 - 0.5 * fraction) / std::pow(1 - fraction, 3);
   const double rate = 24 * fraction * g0 * thermal_speed / (std::sqrt(std::numbers::pi) * diameter);
-  for (const double e : {0.9, 0.8}) {
+  for (const double e : {0.95, 0.9}) {
     const double haff = 6 / ((1 - e * e) * rate);
     Scene scene = box_scene(Vector3::Constant(side), {Axis::x, Axis::y, Axis::z});
     add_pair(scene, "glass", "glass", stiffness, e, 0);
@@ -81,10 +81,10 @@ TEST(Gas, cools_by_the_law_of_haff) {
         e, found, haff, 100 * (found / haff - 1),
         temperature(engine->particles()) / (thermal_speed * thermal_speed),
         rate * haff * std::log(3.0));
-    // Statistics of 20,000 to 35,000 collisions 0.7 %, twice; a rate of collisions lower by the
-    // share of time in contact, ω t_c = 1 %; the dashpot stronger by γ dt / 2 < 1 %; velocities not
-    // quite Gaussian 0.3 % (van Noije & Ernst, Granul. Matter 1, 1998, 57-64).
-    EXPECT_NEAR(found / haff, 1, 0.035) << e;
+    // Statistics of 35,000 collisions and more 0.5 %, three times; a rate of collisions lower by
+    // the share of time in contact, ω t_c = 0.5 %; the dashpot stronger by γ dt / 2 < 0.5 %;
+    // velocities not quite Gaussian 0.3 % (van Noije & Ernst, Granul. Matter 1, 1998, 57-64).
+    EXPECT_NEAR(found / haff, 1, 0.025) << e;
     EXPECT_NEAR(start, 1, 0.02) << e;
   }
 }

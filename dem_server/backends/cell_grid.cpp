@@ -48,39 +48,35 @@ void CellGrid::lay_out(const Domain& domain, double cutoff, PositionRows positio
   }
 }
 
-int CellGrid::cell_of(const double* position) const {
-  int index = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int at = static_cast<int>((position[axis] - lower_[axis]) * cells_per_metre_[axis]);
-    index += std::clamp(at, 0, cells_[axis] - 1) * strides_[axis];
-  }
-  return index;
-}
-
 void CellGrid::sort(const Domain& domain, double cutoff, PositionRows positions) {
   order_.resize(positions.size);
-  cell_at_.resize(positions.size);
+  cell_of_place_.resize(positions.size);
   cell_of_row_.resize(positions.size);
   if (positions.size == 0) return;
   lay_out(domain, cutoff, positions);
   // The axis with the fewest cells runs fastest, so that adjacent cells are near in memory.
-  std::array<int, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return cells_[a] < cells_[b]; });
-  strides_[axes[0]] = 1;
-  strides_[axes[1]] = cells_[axes[0]];
-  strides_[axes[2]] = cells_[axes[0]] * cells_[axes[1]];
+  axes_ = {0, 1, 2};
+  std::stable_sort(axes_.begin(), axes_.end(), [&](int a, int b) { return cells_[a] < cells_[b]; });
+  strides_[axes_[0]] = 1;
+  strides_[axes_[1]] = cells_[axes_[0]];
+  strides_[axes_[2]] = cells_[axes_[0]] * cells_[axes_[1]];
 
   first_.assign(static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2] + 1, 0);
   for (int row = 0; row < positions.size; ++row) {
-    cell_of_row_[row] = cell_of(positions[row]);
-    ++first_[cell_of_row_[row] + 1];
+    int index = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int cell = cell_along(axis, positions[row][axis]);
+      index += std::clamp(cell, 0, cells_[axis] - 1) * strides_[axis];
+    }
+    cell_of_row_[row] = index;
+    ++first_[index + 1];
   }
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   next_.assign(first_.begin(), first_.end());
   for (int row = 0; row < positions.size; ++row) {
     const int place = next_[cell_of_row_[row]]++;
     order_[place] = row;
-    cell_at_[place] = cell_of_row_[row];
+    cell_of_place_[place] = cell_of_row_[row];
   }
 }
 

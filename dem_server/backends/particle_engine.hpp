@@ -24,6 +24,13 @@ struct ParticleState {
   int size() const { return static_cast<int>(id.size()); }
 };
 
+/// What an engine tells of its own work.
+struct EngineCounters {
+  std::int64_t sub_steps = 0;   ///< since it was made
+  std::int64_t rebuilds = 0;    ///< of the list of neighbours, since it was made
+  std::int64_t list_pairs = 0;  ///< in the list now
+};
+
 class ParticleEngine {
  public:
   virtual ~ParticleEngine() = default;
@@ -38,6 +45,7 @@ class ParticleEngine {
   /// each particle (row by row of `particles()`) that stays constant over the window.
   virtual void advance(double window, int sub_steps, std::span<const Vector3> force,
                        const Progress& progress) = 0;
+  virtual EngineCounters counters() const { return {}; }
   virtual void commit() = 0;
   virtual void rollback() = 0;
 };

@@ -118,6 +118,11 @@ inline constexpr auto enum_names<LinearSolverChoice> = std::to_array<Named<Linea
     {LinearSolverChoice::conjugate_gradient, "conjugate_gradient"},
 });
 template <>
+inline constexpr auto enum_names<Precision> = std::to_array<Named<Precision>>({
+    {Precision::full, "double"},
+    {Precision::mixed, "mixed"},
+});
+template <>
 inline constexpr auto enum_names<ParticleBackend> = std::to_array<Named<ParticleBackend>>({
     {ParticleBackend::native, "native"},
     {ParticleBackend::kinematic, "kinematic"},

@@ -281,7 +281,11 @@ struct InsertionSettings {
 
 enum class WallSource { from_mesh, none };
 
+/// double: all numbers. mixed: positions in double, the rest of a particle and its contacts in float.
+enum class Precision { full, mixed };
+
 struct ParticleNumerics {
+  Precision precision = Precision::full;
   int threads = 0;  ///< 0: all cores of the machine
 };
 

@@ -120,6 +120,11 @@ void describe(Visit& visit, InsertionSettings& entry) {
 
 template <class Visit>
 void describe(Visit& visit, ParticleNumerics& numerics) {
+  visit({.name = "precision",
+         .meaning = "Of the native engine. `mixed`: positions in double, velocities, forces and "
+                    "springs in float; faster and smaller, at the error that docs/results.md "
+                    "shows."},
+        numerics.precision);
   visit({.name = "threads",
          .range = not_negative,
          .meaning = "Threads of the particle solver; 0: all cores."},

@@ -2,6 +2,7 @@
 // Set up once when the engine is made; the force itself is in contact_force.hpp.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,15 @@ double damping_ratio(double restitution);
 /// Coefficient [kg/s] of the normal dashpot: 2 ζ sqrt(k m_eff), which is γ_n m_eff of other codes.
 double damping_coefficient(const PairLaw& law, double effective_mass);
 
+/// The laws as the kernel reads them, in its own precision.
+template <class Real>
+struct LawTable {
+  struct Row {
+    Real normal_stiffness, tangential_stiffness, inverse_tangential_stiffness, damping, friction;
+  };
+  std::vector<Row> rows;
+};
+
 /// Laws by two materials, or a material and the walls.
 class ContactLaws {
  public:
@@ -37,6 +47,20 @@ class ContactLaws {
 
   int walls() const { return static_cast<int>(names_.size()) - 1; }  ///< the walls' material index
   int index(int a, int b) const { return a * static_cast<int>(names_.size()) + b; }
+  /// All laws, in the order of `index`.
+  template <class Real>
+  LawTable<Real> table() const {
+    LawTable<Real> table;
+    for (const PairLaw& law : laws_) {
+      table.rows.push_back({static_cast<Real>(law.normal_stiffness),
+                            static_cast<Real>(law.tangential_stiffness),
+                            static_cast<Real>(1 / law.tangential_stiffness),
+                            static_cast<Real>(2 * law.damping_ratio *
+                                              std::sqrt(law.normal_stiffness)),
+                            static_cast<Real>(law.friction)});
+    }
+    return table;
+  }
   const PairLaw& operator[](int index) const { return laws_[index]; }
   const std::string& name(int material) const { return names_[material]; }
   /// True if any contact has friction: only then are tangential springs and spins followed.

@@ -1,185 +1,245 @@
 #include "dem_server/backends/native/contact_list.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fluxpact {
 namespace {
 
 /// Everything that the making of one list reads.
+template <class Real, bool turning>
 struct Sources {
   const ContactScope& scope;
-  const Spheres& spheres;
-  const Blocks& blocks;
-  const CellGrid& grid;
+  std::span<const Body<Real, turning>> spheres;
+  const std::vector<int>& material_of_row;
+  const SizeLevels& levels;
   const Resorting& resorting;
-  const ContactList* before;
+  const ContactList<Real>* before;
   std::array<Vector3, 27> shifts;
 
-  int material(int place) const { return scope.material_of_row[spheres.row[place]]; }
+  int law(const ContactList<Real>& list, int i, int other_material) const {
+    return scope.laws.index(material_of_row[list.row[i]], other_material);
+  }
 };
 
-bool near(const Sources& from, int i, int j, int shift) {
-  const Body& a = from.spheres.body[i];
-  const Body& b = from.spheres.body[j];
-  const Vector3& image = from.shifts[shift];
-  double square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double apart = a.position[axis] - (b.position[axis] + image[axis]);
-    square += apart * apart;
+/// How a pair stood in the list before.
+struct FormerPair {
+  int i, j, shift;
+};
+
+/// The springs of a pair in the old list, or none.
+template <class Real>
+struct Held {
+  const Springs<Real>* springs = nullptr;
+  int contact = 0;
+  Real sign = 1;  // -1 if the partner held it
+};
+
+int find_pair(const std::vector<Pair>& pairs, int mine, int other, int shift) {
+  auto at = std::lower_bound(pairs.begin(), pairs.end(), mine,
+                             [](const Pair& pair, int place) { return pair.mine < place; });
+  for (; at != pairs.end() && at->mine == mine; ++at) {
+    if (at->other == other && at->shift == shift) return static_cast<int>(at - pairs.begin());
   }
-  const double reach = a.radius + b.radius + from.scope.skin;
-  return square < reach * reach;
+  return -1;
 }
 
-PairSlot make_pair(const Sources& from, int i, int j, int shift) {
-  const int law = from.scope.laws.index(from.material(i), from.material(j));
-  const double mass = 1.0 / (from.spheres.body[i].inverse_mass + from.spheres.body[j].inverse_mass);
-  return {j, static_cast<std::uint16_t>(shift), static_cast<std::uint16_t>(law),
-          damping_coefficient(from.scope.laws[law], mass)};
-}
-
-/// The spring of the pair (i, j, shift) if the block held it in row i, in places of the old order.
-const Spring* find_spring(const ContactList& list, const Blocks& blocks, int i, int j, int shift) {
-  const ContactBlock& block = list.blocks[blocks.holding(i)];
-  const int row = i - blocks.first(blocks.holding(i));
-  for (int slot = block.row_first[row]; slot < block.row_first[row + 1]; ++slot) {
-    if (block.pairs[slot].other == j && block.pairs[slot].shift == shift) {
-      return &block.pair_springs[slot];
-    }
+template <class Real>
+Held<Real> find_springs(const ContactList<Real>& list, const FormerPair& pair) {
+  const int holder = list.blocks.holding(pair.i);
+  const int first = list.blocks.first(holder);
+  const ContactBlock<Real>& block = list.block[holder];
+  const auto held = [](const Springs<Real>& springs, int contact, Real sign) {
+    return contact < 0 ? Held<Real>{} : Held<Real>{&springs, contact, sign};
+  };
+  if (pair.shift != Shift::none) {
+    return held(block.image_springs, find_pair(block.image, pair.i - first, pair.j, pair.shift), 1);
   }
-  return nullptr;
+  if (list.blocks.holding(pair.j) != holder) {
+    return held(block.outer_springs, find_pair(block.outer, pair.i - first, pair.j, pair.shift), 1);
+  }
+  const int low = std::min(pair.i, pair.j) - first;
+  const int high = std::max(pair.i, pair.j) - first;
+  return held(block.inner_springs, find_pair(block.inner, low, high, pair.shift),
+              pair.i < pair.j ? Real(1) : Real(-1));
 }
 
-/// The spring that a pair had in the list before, in its direction now; zero for a new pair.
-Spring carried_spring(const Sources& from, int i, const PairSlot& slot) {
-  if (from.before == nullptr) return {};
-  const int j = slot.other;
+/// The springs that a pair had in the list before.
+template <class Real, bool turning>
+Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int shift) {
   // Wrapping moved each particle by whole periods; the vector between the two stayed the same.
-  std::array<int, 3> periods = Shift::periods(slot.shift);
+  std::array<int, 3> periods = Shift::periods(shift);
   for (int axis = 0; axis < 3; ++axis) {
     periods[axis] += from.resorting.periods[i][axis] - from.resorting.periods[j][axis];
     if (periods[axis] < -1 || periods[axis] > 1) return {};  // no neighbours before
   }
   const int old_i = from.resorting.previous[i];
   const int old_j = from.resorting.previous[j];
-  const int shift = Shift::code(periods[0], periods[1], periods[2]);
-  const int reverse = Shift::code(-periods[0], -periods[1], -periods[2]);
-  if (const Spring* held = find_spring(*from.before, from.blocks, old_i, old_j, shift)) {
-    return *held;
-  }
-  if (const Spring* held = find_spring(*from.before, from.blocks, old_j, old_i, reverse)) {
-    return {{-held->x[0], -held->x[1], -held->x[2]}};
-  }
-  return {};
+  if (old_i < 0 || old_j < 0) return {};
+  return find_springs(*from.before,
+                      {old_i, old_j, Shift::code(periods[0], periods[1], periods[2])});
 }
 
-void fill_pairs(const Sources& from, int index, ContactBlock& block) {
-  const int first = from.blocks.first(index);
-  const int last = from.blocks.last(index);
-  block.row_first.clear();
-  block.remote_first.clear();
-  block.pairs.clear();
-  block.remote_pairs = 0;
-  block.row_first.push_back(0);
+template <class Real>
+void carry(const Held<Real>& held, int numbers, int contact, Springs<Real>& springs) {
+  if (held.springs == nullptr) return;
+  for (int n = 0; n < numbers; ++n) {
+    springs.row(n)[contact] = held.sign * held.springs->row(n)[held.contact];
+  }
+}
+
+/// Springs of the pairs of a new list; `first` and `base` turn its places into those of all
+/// particles.
+template <class Real, bool turning>
+void fill_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int first,
+                  int base, Springs<Real>& springs) {
+  springs.reset(static_cast<int>(pairs.size()), from.scope.spring_numbers);
+  if (from.before == nullptr || from.scope.spring_numbers == 0) return;
+  for (int contact = 0; contact < springs.contacts; ++contact) {
+    const Pair& pair = pairs[contact];
+    const Held<Real> held =
+        former_springs(from, first + pair.mine, base + pair.other, pair.shift);
+    carry(held, from.scope.spring_numbers, contact, springs);
+  }
+}
+
+template <class Real, bool turning>
+void find_pairs(const Sources<Real, turning>& from, int index, const ContactList<Real>& list,
+                ContactBlock<Real>& block) {
+  const int first = list.blocks.first(index);
+  const int last = list.blocks.last(index);
+  block.inner.clear();
+  block.outer.clear();
+  block.image.clear();
   for (int i = first; i < last; ++i) {
-    const auto begin = static_cast<std::ptrdiff_t>(block.pairs.size());
-    from.grid.visit_partners(i, [&](int j, int shift) {
-      if (near(from, i, j, shift)) block.pairs.push_back(make_pair(from, i, j, shift));
+    const Body<Real, turning>& a = from.spheres[i];
+    const double reach = a.radius + from.scope.skin;
+    const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base) {
+      const Vector3& image = from.shifts[shift];
+      for (int j = begin; j < end; ++j) {
+        const Body<Real, turning>& b = from.spheres[j];
+        const double x = a.position[0] - b.position[0] - image[0];
+        const double y = a.position[1] - b.position[1] - image[1];
+        const double z = a.position[2] - b.position[2] - image[2];
+        const double sum = reach + b.radius;
+        if (x * x + y * y + z * z >= sum * sum || j == i) continue;
+        const int law = from.law(list, i, from.material_of_row[list.row[j]]);
+        pairs.push_back({j - base, static_cast<std::uint16_t>(i - first),
+                         static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
+      }
+    };
+    from.levels.visit_near(a.position, a.radius, [&](int begin, int end, int shift) {
+      if (shift != Shift::none) {
+        add(begin, end, shift, block.image, 0);
+        return;
+      }
+      add(begin, std::min(end, first), shift, block.outer, 0);
+      add(std::max(begin, i + 1), std::min(end, last), shift, block.inner, first);
+      add(std::max(begin, last), end, shift, block.outer, 0);
     });
-    const auto remote = std::stable_partition(
-        block.pairs.begin() + begin, block.pairs.end(),
-        [&](const PairSlot& slot) { return slot.other >= first && slot.other < last; });
-    block.remote_first.push_back(static_cast<int>(remote - block.pairs.begin()));
-    block.remote_pairs += static_cast<int>(block.pairs.end() - remote);
-    block.row_first.push_back(static_cast<int>(block.pairs.size()));
   }
-  block.pair_springs.clear();
-  if (!from.scope.friction) return;
-  for (int i = first; i < last; ++i) {
-    for (int slot = block.row_first[i - first]; slot < block.row_first[i - first + 1]; ++slot) {
-      block.pair_springs.push_back(carried_spring(from, i, block.pairs[slot]));
-    }
+  fill_springs(from, block.inner, first, first, block.inner_springs);
+  fill_springs(from, block.outer, first, 0, block.outer_springs);
+  fill_springs(from, block.image, first, 0, block.image_springs);
+}
+
+template <class Real>
+void carry_plane_spring(const ContactList<Real>& before, int old, int side, int numbers,
+                        int contact, Springs<Real>& springs) {
+  if (old < 0) return;
+  const ContactBlock<Real>& block = before.block[before.blocks.holding(old)];
+  const int mine = old - before.blocks.first(before.blocks.holding(old));
+  auto held = std::lower_bound(block.planes.begin(), block.planes.end(), mine,
+                               [](const NearPlane& p, int place) { return p.mine < place; });
+  for (; held != block.planes.end() && held->mine == mine; ++held) {
+    if (held->side != side) continue;
+    const int at = static_cast<int>(held - block.planes.begin());
+    carry(Held<Real>{&block.plane_springs, at, 1}, numbers, contact, springs);
   }
 }
 
-Spring carried_wall_spring(const Sources& from, const WallSlot& slot) {
-  if (from.before == nullptr) return {};
-  const int old = from.resorting.previous[slot.particle];
-  const ContactBlock& block = from.before->blocks[from.blocks.holding(old)];
-  auto held =
-      std::lower_bound(block.walls.begin(), block.walls.end(), old,
-                       [](const WallSlot& w, int particle) { return w.particle < particle; });
-  for (; held != block.walls.end() && held->particle == old; ++held) {
-    if (held->side == slot.side) return block.wall_springs[held - block.walls.begin()];
-  }
-  return {};
-}
-
-void fill_walls(const Sources& from, int index, ContactBlock& block) {
-  block.walls.clear();
-  block.wall_springs.clear();
+template <class Real, bool turning>
+void find_planes(const Sources<Real, turning>& from, int index, const ContactList<Real>& list,
+                 ContactBlock<Real>& block) {
+  block.planes.clear();
   const Domain& domain = from.scope.domain;
-  for (int i = from.blocks.first(index); i < from.blocks.last(index); ++i) {
-    const Body& body = from.spheres.body[i];
+  const int first = list.blocks.first(index);
+  for (int i = first; i < list.blocks.last(index); ++i) {
+    const Body<Real, turning>& body = from.spheres[i];
     for (int side = 0; side < 6; ++side) {
       if (domain.sides[side] != SideKind::wall) continue;
       const double inward = side % 2 == 0 ? 1.0 : -1.0;
       const double distance = inward * (body.position[side / 2] - domain.plane(side));
       // The wall stands still, so half a skin is enough.
       if (!(distance < body.radius + 0.5 * from.scope.skin)) continue;
-      const int law = from.scope.laws.index(from.material(i), from.scope.laws.walls());
-      block.walls.push_back({i, static_cast<std::uint16_t>(side), static_cast<std::uint16_t>(law),
-                             damping_coefficient(from.scope.laws[law], 1.0 / body.inverse_mass)});
-      if (from.scope.friction) {
-        block.wall_springs.push_back(carried_wall_spring(from, block.walls.back()));
-      }
+      const int law = from.law(list, i, from.scope.laws.walls());
+      block.planes.push_back({static_cast<std::uint16_t>(i - first),
+                              static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(law)});
     }
+  }
+  const int numbers = from.scope.spring_numbers;
+  block.plane_springs.reset(static_cast<int>(block.planes.size()), numbers);
+  if (from.before == nullptr || numbers == 0) return;
+  for (int contact = 0; contact < block.plane_springs.contacts; ++contact) {
+    const NearPlane& near = block.planes[contact];
+    carry_plane_spring(*from.before, from.resorting.previous[first + near.mine], near.side, numbers,
+                       contact, block.plane_springs);
   }
 }
 
-/// Give each pair that joins two blocks a place in the outbox, and each particle the list of the
-/// places where reactions on it stand.
-void connect_blocks(const Blocks& blocks, ContactList& list) {
-  list.outbox_size = 0;
-  list.inbox_first.assign(blocks.particles + 1, 0);
-  const auto for_each_remote = [&](const auto& visit) {
-    for (int b = 0; b < blocks.count(); ++b) {
-      const ContactBlock& block = list.blocks[b];
-      int place = block.outbox_first;
-      for (std::size_t row = 0; row < block.remote_first.size(); ++row) {
-        for (int s = block.remote_first[row]; s < block.row_first[row + 1]; ++s) {
-          visit(block.pairs[s].other, place++);
-        }
-      }
-    }
-  };
-  for (ContactBlock& block : list.blocks) {
-    block.outbox_first = list.outbox_size;
-    list.outbox_size += block.remote_pairs;
+/// Where the particles are now, and how far they may go.
+template <class Real, bool turning>
+void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
+  Vector3 lower = Vector3::Zero();
+  Vector3 upper = Vector3::Zero();
+  const int count = static_cast<int>(from.spheres.size());
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Map<const Vector3> at(from.spheres[i].position);
+    lower = i == 0 ? Vector3(at) : Vector3(lower.cwiseMin(at));
+    upper = i == 0 ? Vector3(at) : Vector3(upper.cwiseMax(at));
   }
-  // Counting sort by partner; the second pass runs the starts up to the ends, which shifts them
-  // back.
-  for_each_remote([&](int other, int) { ++list.inbox_first[other + 1]; });
-  for (int i = 0; i < blocks.particles; ++i) list.inbox_first[i + 1] += list.inbox_first[i];
-  list.inbox.resize(list.outbox_size);
-  for_each_remote([&](int other, int place) { list.inbox[list.inbox_first[other]++] = place; });
-  for (int i = blocks.particles; i > 0; --i) list.inbox_first[i] = list.inbox_first[i - 1];
-  list.inbox_first[0] = 0;
+  list.origin = 0.5 * (lower + upper);
+  // Half an ulp of a float in each axis, relative to the farthest offset.
+  const double rounding = 0.5 * (upper - lower).norm() * 6e-8;
+  list.reach = std::max(0.5 * from.scope.skin - rounding, 0.0);
+  list.listed_at.resize(count);
+#pragma omp parallel for num_threads(from.scope.threads) schedule(static)
+  for (int i = 0; i < count; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      list.listed_at[i].offset[axis] =
+          static_cast<float>(from.spheres[i].position[axis] - list.origin[axis]);
+    }
+    // In line with the radius, the last number of a row of positions.
+    list.listed_at[i].offset[3] = static_cast<float>(from.spheres[i].radius);
+  }
 }
 
 }  // namespace
 
-void make_contact_list(const ContactScope& scope, const Spheres& spheres, const Blocks& blocks,
-                       const CellGrid& grid, const Resorting& resorting, const ContactList* before,
-                       ContactList& list) {
-  const Sources from{scope, spheres, blocks, grid, resorting, before, shift_vectors(scope.domain)};
-  list.blocks.resize(blocks.count());
+template <class Real, bool turning>
+void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
+                       const std::vector<int>& material, const SizeLevels& levels,
+                       const Resorting& resorting, const ContactList<Real>* before,
+                       ContactList<Real>& list) {
+  const Sources<Real, turning> from{
+      scope, spheres, material, levels, resorting, before, shift_vectors(scope.domain)};
+  list.block.resize(list.blocks.count());
+  mark_places(from, list);
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
-  for (int b = 0; b < blocks.count(); ++b) {
-    fill_pairs(from, b, list.blocks[b]);
-    fill_walls(from, b, list.blocks[b]);
+  for (int b = 0; b < list.blocks.count(); ++b) {
+    find_pairs(from, b, list, list.block[b]);
+    find_planes(from, b, list, list.block[b]);
   }
-  connect_blocks(blocks, list);
 }
+
+#define FLUXPACT_INSTANTIATE(Real, turning)                                                 \
+  template void make_contact_list<Real, turning>(                                           \
+      const ContactScope&, std::span<const Body<Real, turning>>, const std::vector<int>&,   \
+      const SizeLevels&, const Resorting&, const ContactList<Real>*, ContactList<Real>&);
+FLUXPACT_INSTANTIATE(double, false)
+FLUXPACT_INSTANTIATE(double, true)
+FLUXPACT_INSTANTIATE(float, false)
+FLUXPACT_INSTANTIATE(float, true)
+#undef FLUXPACT_INSTANTIATE
 
 }  // namespace fluxpact

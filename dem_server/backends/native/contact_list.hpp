@@ -1,82 +1,108 @@
-// Who may touch whom until a particle has moved by half a skin, with the tangential spring of each
-// contact in place. Remade between two sub-steps when that has happened; springs of lasting
-// contacts are carried over.
+// Who may touch whom until a particle has moved by half a skin, with the springs of each contact in
+// place. Remade between two sub-steps when that has happened; springs of lasting contacts are
+// carried over.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "dem_server/backends/cell_grid.hpp"
 #include "dem_server/backends/native/contact_law.hpp"
 #include "dem_server/backends/native/spheres.hpp"
+#include "dem_server/backends/size_levels.hpp"
 
 namespace fluxpact {
 
-/// A pair of neighbours, held by one of the two (the particle in whose row it stands).
-struct PairSlot {
-  int other = 0;             ///< the partner's place
-  std::uint16_t shift = 13;  ///< periods to add to the partner's position (Shift)
-  std::uint16_t law = 0;     ///< index into ContactLaws
-  double damping = 0;        ///< [kg/s] normal dashpot
+/// A pair of neighbours, held by one of the two.
+struct Pair {
+  std::int32_t other = 0;     ///< the partner's place; in its block for an inner pair
+  std::uint16_t mine = 0;     ///< place of the holder in its block
+  std::uint8_t shift = 13;    ///< periods to add to the partner's position (Shift)
+  std::uint8_t law = 0;       ///< row of the table of laws
 };
 
-struct WallSlot {
-  int particle = 0;
-  std::uint16_t side = 0;
-  std::uint16_t law = 0;
-  double damping = 0;  ///< [kg/s]
+/// A particle near one of the plane sides of the domain.
+struct NearPlane {
+  std::uint16_t mine = 0;
+  std::uint8_t side = 0;
+  std::uint8_t law = 0;
 };
 
-/// Elongation of the tangential spring of a contact [m], seen from the particle that holds the
-/// slot.
-struct Spring {
-  double x[3];
+/// Springs of the contacts of one list, one row of numbers for each component: x, y, z of the
+/// elongation [m], seen from the holder, then what the law wants beside. Rows have room for whole
+/// vector registers.
+template <class Real>
+struct Springs {
+  static constexpr int widest = 16;  // contacts in one register
+  HugeVector<Real> values;
+  int contacts = 0;
+  std::ptrdiff_t stride = 0;  // from one row to the next
+
+  /// All zero, for so many contacts with so many numbers each.
+  void reset(int count, int numbers) {
+    contacts = count;
+    stride = (count + widest - 1) / widest * widest;
+    values.assign(static_cast<std::size_t>(stride) * numbers, Real(0));
+  }
+  Real* row(int number) { return values.data() + number * stride; }
+  const Real* row(int number) const { return values.data() + number * stride; }
 };
 
-/// The contacts held by the particles of one block. The pairs of particle i are
-/// [row_first[i - first], remote_first[i - first]) with partners in the same block, then up to
-/// row_first[i - first + 1] with partners elsewhere.
+/// The contacts of the particles of one block, each list ascending by the holder.
+///
+/// An inner pair joins two particles of the block and is held once. A pair of two blocks, or across
+/// a periodic side, is held by both: each computes the force on its own, and since the arithmetic is
+/// that of a mirror image the two forces are opposite to the last bit. So a block needs nothing of
+/// another but positions and velocities.
+template <class Real>
 struct ContactBlock {
-  std::vector<int> row_first;
-  std::vector<int> remote_first;
-  std::vector<PairSlot> pairs;
-  std::vector<Spring> pair_springs;  ///< empty without friction
-  std::vector<WallSlot> walls;       ///< ascending by particle, then side
-  std::vector<Spring> wall_springs;
-  int remote_pairs = 0;
-  int outbox_first = 0;  ///< its first place in the outbox
+  std::vector<Pair> inner;
+  std::vector<Pair> outer;  ///< partner in another block
+  std::vector<Pair> image;  ///< across a periodic side
+  std::vector<NearPlane> planes;
+  Springs<Real> inner_springs, outer_springs, image_springs, plane_springs;
 };
 
-/// The contact list. A reaction on a particle of another block goes through the outbox: the holder
-/// writes it there, and the partner adds its own from `inbox` in a fixed order.
+/// Where a particle was when the list was made: [m] from an origin. Float is enough, since the reach
+/// that is left to a particle allows for its rounding.
+struct alignas(16) ListedAt {
+  float offset[4];
+};
+
+/// The contact list and the order of the particles for which it holds.
+template <class Real>
 struct ContactList {
-  std::vector<ContactBlock> blocks;
-  std::vector<int> inbox_first;  ///< CSR by particle, into inbox
-  std::vector<int> inbox;        ///< places in the outbox, ascending
-  int outbox_size = 0;
+  Blocks blocks;
+  std::vector<ContactBlock<Real>> block;
+  std::vector<int> row;  ///< of each place: row of the presented state, which is ascending by id
+  Vector3 origin{0, 0, 0};             ///< [m] of listed_at
+  double reach = 0;                    ///< [m] that a particle may move before the list is remade
+  HugeVector<ListedAt> listed_at;
 };
 
 /// What stays the same for all lists of an engine.
 struct ContactScope {
   const Domain& domain;
   const ContactLaws& laws;
-  const std::vector<int>& material_of_row;  ///< of the presented rows
-  double skin;                              ///< [m]
-  bool friction;
-  int threads;
+  double skin = 0;         ///< [m]
+  int spring_numbers = 0;  ///< of each contact; 0 without friction
+  int threads = 1;
 };
 
 /// Where each particle came from when it was sorted anew.
 struct Resorting {
-  std::vector<int> previous;                        ///< its place before
+  std::vector<int> previous;                        ///< its place before; -1: it was not there
   std::vector<std::array<std::int8_t, 3>> periods;  ///< subtracted from its position to wrap it
 };
 
-/// Make `list` for the spheres as they are, sorted by `grid`. Springs of pairs that `before` (the
-/// list in the previous order, or nullptr) holds are carried over.
-void make_contact_list(const ContactScope& scope, const Spheres& spheres, const Blocks& blocks,
-                       const CellGrid& grid, const Resorting& resorting, const ContactList* before,
-                       ContactList& list);
+/// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already. `material`
+/// of each presented row. Springs of pairs that `before` (the list in the previous order, or
+/// nullptr) holds are carried over.
+template <class Real, bool turning>
+void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
+                       const std::vector<int>& material, const SizeLevels& levels,
+                       const Resorting& resorting, const ContactList<Real>* before,
+                       ContactList<Real>& list);
 
 }  // namespace fluxpact

@@ -3,9 +3,11 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
-#include "dem_server/backends/native/sub_step.hpp"
+#include "dem_server/backends/native/contact_pass.hpp"
+#include "dem_server/backends/native/soundness.hpp"
 #include "dem_server/backends/particle_rows.hpp"
 #include "proto/base/errors.hpp"
 
@@ -15,208 +17,284 @@ namespace {
 /// List pairs per particle against rebuilds: 0.15 diameters is near the best from a bed at rest to
 /// one that bubbles.
 constexpr double skin_per_diameter = 0.15;
+/// Rows and loads of a block stay in a core's own cache; pairs between blocks cost double, so the
+/// blocks are as large as that allows, but enough for some threads in small scenes.
+constexpr int largest_block = 8192;
+constexpr int least_blocks = 4;
+constexpr int smallest_block = 128;
 
-/// What a rollback brings back beside the list itself, which the window does not touch.
-struct SavedState {
-  bool valid = false;
-  Spheres spheres;
-  std::size_t list = 0;
-  std::vector<std::vector<Spring>> pair_springs;  // by block
-  std::vector<std::vector<Spring>> wall_springs;
+template <class Real>
+struct SavedSprings {
+  Springs<Real> inner, outer, image, plane;
 };
 
+/// Of particles that all have the same mass.
+RootMasses common_root_masses(const ParticleState& particles) {
+  const int count = particles.size();
+  const auto mass = [&](int row) {
+    return sphere_mass(particles.radius[row], particles.density[row]);
+  };
+  for (int row = 1; row < count; ++row) {
+    if (mass(row) != mass(0)) return {};
+  }
+  if (count == 0) return {};
+  return {std::sqrt(mass(0) / 2), std::sqrt(mass(0))};
+}
+
+template <class Real, bool turning>
 class NativeEngine final : public ParticleEngine {
  public:
-  NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState initial);
+  NativeEngine(const Scene& scene, const Mesh& mesh, ContactLaws laws, ParticleState initial);
 
   const ParticleState& particles() const override { return presented_; }
   bool mobile() const override { return true; }
+  EngineCounters counters() const override;
   void advance(double window, int sub_steps, std::span<const Vector3> force,
                const Progress& progress) override;
   void commit() override;
   void rollback() override;
 
  private:
+  using BodyRow = Body<Real, turning>;
+  using LoadRow = Load<Real, turning>;
+  using List = ContactList<Real>;
+
   void size_up();
   void load_rows();
-  void check_step(double time_step) const;
+  void tabulate_sides();
   void set_drive(std::span<const Vector3> force);
-  void sort_and_list(bool carry_springs);
-  void wrap_and_sort();
-  void check_particles(double time_step, int sub_step, int sub_steps) const;
-  [[noreturn]] void refuse(int row, double time_step, int sub_step, int sub_steps) const;
-  bool is_sound(int place, double time_step) const;
-  void present();
-  void save();
-  StepContext context() const {
-    return {blocks_,   laws_,   domain_, drive_, any_periodic_ ? shifts_.data() : nullptr,
-            friction_, threads_};
-  }
+  bool sweep(Phase phase, double time_step, double spring_step, int from, int to,
+             HugeVector<LoadRow>& loads);
+  void sort_and_list(int from, int to, bool carry_springs);
+  void wrap(HugeVector<BodyRow>& bodies);
+  void check(int bodies, double time_step, int sub_step, int sub_steps) const;
+  void present(int bodies);
+  void save_springs();
+  int threads_for(const Blocks& blocks) const { return std::clamp(threads_, 1, blocks.count()); }
 
   Domain domain_;
   ContactLaws laws_;
-  std::array<Vector3, 27> shifts_;
+  LawTable<Real> law_table_;
+  std::array<double[4], 27> shifts_{};
+  std::array<double[4], 6> planes_{};
   Vector3 gravity_;
-  bool friction_;
   bool any_periodic_;
-  bool any_wall_;
   int threads_;
   StepLimit limit_;
-  double largest_diameter_ = 0;
+  RootMasses root_masses_;
   double skin_ = 0;
-  Blocks blocks_;
 
   ParticleState presented_;
-  Spheres spheres_;
-  std::array<ContactList, 3> lists_;  // in use, kept for rollback, being made
-  std::size_t list_ = 0;
-  std::vector<Load> outbox_;
-  std::vector<Vector3> drive_;  // [m/s²] in cell order
-  SavedState saved_;
+  std::array<HugeVector<BodyRow>, 3> bodies_;  // committed, and two to go back and forth
+  int committed_ = 0;
+  int candidate_ = 0;
+  HugeVector<LoadRow> loads_;            // of the committed state
+  HugeVector<LoadRow> candidate_loads_;  // of the candidate
+  std::array<List, 3> lists_;            // in use, kept for rollback, being made
+  int list_ = 0;
+  int committed_list_ = 0;
+  std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
   bool has_candidate_ = false;
+  HugeVector<Drive<Real>> drive_;
+  HugeVector<LoadRow> sums_;  // room for each thread
 
   // Kept between rebuilds so that they need no memory of their own each time.
-  CellGrid grid_;
+  SizeLevels levels_;
   Resorting resorting_;
-  Spheres sorted_;
-  std::vector<Vector3> sorted_drive_;
+  HugeVector<Drive<Real>> sorted_drive_;
+  std::int64_t rebuilds_ = 0;
+  std::int64_t sub_steps_ = 0;
 };
 
-NativeEngine::NativeEngine(const Scene& scene, const Mesh& mesh, ParticleState initial)
+template <class Real, bool turning>
+NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, ContactLaws laws,
+                                          ParticleState initial)
     : domain_(particle_domain(scene, mesh)),
-      laws_(scene.particles),
-      shifts_(shift_vectors(domain_)),
+      laws_(std::move(laws)),
+      law_table_(laws_.table<Real>()),
       gravity_(scene.scene.gravity),
-      friction_(laws_.any_friction()),
       presented_(checked_rows(std::move(initial), laws_.walls())) {
   const auto is = [this](SideKind kind) {
     return std::find(domain_.sides.begin(), domain_.sides.end(), kind) != domain_.sides.end();
   };
   any_periodic_ = is(SideKind::periodic);
-  any_wall_ = is(SideKind::wall);
-  size_up();
   const int asked = scene.particles.numerics.threads;
-  threads_ = std::clamp(asked > 0 ? asked : omp_get_max_threads(), 1, std::max(1, blocks_.count()));
-  limit_ = step_limit(laws_, presented_, any_wall_);
-  const double time_step = scene.coupling.window / sub_steps(scene);
-  check_step(time_step);
+  threads_ = asked > 0 ? asked : omp_get_max_threads();
+  size_up();
+  limit_ = step_limit(laws_, presented_, is(SideKind::wall));
+  check_sub_step(limit_, scene.coupling.window / sub_steps(scene));
+  tabulate_sides();
   load_rows();
-  check_particles(0, 0, 0);
-  sort_and_list(false);
+  check(0, 0, 0, 0);
+  sort_and_list(0, 1, false);
   // Forces of contacts that exist from the start, with their springs at rest.
-  add_contacts(context(), 0, lists_[list_], outbox_, spheres_);
-  settle(context(), 0, lists_[list_], outbox_, spheres_);
-  present();
+  sweep(Phase::settle, 0, 0, 1, 2, loads_);
+  committed_ = candidate_ = 2;
+  committed_list_ = list_;
+  present(committed_);
 }
 
-/// Lengths that follow from the particles, and how they are cut into blocks.
-void NativeEngine::size_up() {
-  const int count = presented_.size();
+/// Lengths that follow from the particles.
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::size_up() {
+  double largest = 0;
   double mean = 0;
   for (const double radius : presented_.radius) {
-    largest_diameter_ = std::max(largest_diameter_, 2 * radius);
-    mean += 2 * radius / count;
+    largest = std::max(largest, 2 * radius);
+    mean += 2 * radius / presented_.size();
   }
   skin_ = skin_per_diameter * mean;
-  // Enough blocks for many threads, but few pairs between blocks.
-  blocks_ = {count, std::clamp(count / 32, 128, 2048)};
-  const double shortest = largest_diameter_ + skin_;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (domain_.periodic(axis) && domain_.length(axis) < shortest) {
-      throw ConfigError(
-          "fluid.mesh.periodic: the period in {} is {:.6g} m, but the largest particle has a "
-          "diameter "
-          "of {:.6g} m and would meet its own image; make the box at least {:.6g} m long there",
-          "xyz"[axis], domain_.length(axis), largest_diameter_, shortest);
-    }
+  check_periods(domain_, largest, largest + skin_);
+}
+
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::tabulate_sides() {
+  const std::array<Vector3, 27> shifts = shift_vectors(domain_);
+  for (int code = 0; code < 27; ++code) {
+    for (int axis = 0; axis < 3; ++axis) shifts_[code][axis] = shifts[code][axis];
+  }
+  for (int side = 0; side < 6; ++side) {
+    const double inward = side % 2 == 0 ? 1.0 : -1.0;
+    planes_[side][side / 2] = inward;
+    planes_[side][3] = inward * domain_.plane(side);
   }
 }
 
-void NativeEngine::load_rows() {
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::load_rows() {
   const int count = presented_.size();
-  spheres_.load.resize(count);
-  spheres_.listed_at.resize(count);
+  for (HugeVector<BodyRow>& bodies : bodies_) bodies.resize(count);
+  List& list = lists_[list_];
+  list.row.resize(count);
   for (int row = 0; row < count; ++row) {
     const double radius = presented_.radius[row];
-    const double mass = sphere_mass(radius, presented_.density[row]);
-    const Vector3& x = presented_.position[row];
-    const Vector3& v = presented_.velocity[row];
-    const Vector3& w = presented_.spin[row];
-    spheres_.body.push_back({{x.x(), x.y(), x.z()}, radius, {v.x(), v.y(), v.z()}, 1.0 / mass});
-    spheres_.spin.push_back({{w.x(), w.y(), w.z()}, 1.0 / (0.4 * mass * radius * radius)});
-    spheres_.row.push_back(row);
+    BodyRow& body = bodies_[0][row];
+    body.radius = radius;
+    body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+    for (int axis = 0; axis < 3; ++axis) {
+      body.position[axis] = presented_.position[row][axis];
+      body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);
+      if constexpr (turning) {
+        body.radius_spin[axis] = static_cast<Real>(radius * presented_.spin[row][axis]);
+      }
+    }
+    if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
+    list.row[row] = row;
   }
-  drive_.assign(count, Vector3::Zero());
+  root_masses_ = common_root_masses(presented_);
+  loads_.resize(count);
+  candidate_loads_.resize(count);
+  drive_.assign(count, {});
 }
 
-void NativeEngine::check_step(double time_step) const {
-  // A window cut into equal parts may miss the limit by a rounding error.
-  if (time_step <= limit_.longest * (1 + 1e-9)) return;
-  throw ConfigError(
-      "particles.time_step: a sub-step of {:.4g} s is longer than a tenth of the contact time of "
-      "{}, "
-      "{:.4g} s; set it to at most {:.4g} s (recommended: {:.2g} s, a twentieth), or soften the "
-      "contact",
-      time_step, limit_.pair, 10 * limit_.longest, limit_.longest, 0.5 * limit_.longest);
-}
-
-void NativeEngine::set_drive(std::span<const Vector3> force) {
-  if (static_cast<int>(force.size()) != spheres_.size()) {
-    throw NumericsError("force on the particles: {} rows for {} particles", force.size(),
-                        spheres_.size());
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::set_drive(std::span<const Vector3> force) {
+  const int count = presented_.size();
+  if (static_cast<int>(force.size()) != count) {
+    throw NumericsError("force on the particles: {} rows for {} particles", force.size(), count);
   }
-  int bad = spheres_.size();
+  int bad = count;
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
-  for (int i = 0; i < spheres_.size(); ++i) {
-    const int row = spheres_.row[i];
-    drive_[i] = gravity_ + force[row] * spheres_.body[i].inverse_mass;
-    if (!drive_[i].allFinite()) bad = std::min(bad, row);
+  for (int i = 0; i < count; ++i) {
+    const int row = lists_[list_].row[i];
+    const double inverse_mass = static_cast<double>(bodies_[committed_][i].inverse_mass);
+    const Vector3 drive = gravity_ + force[row] * inverse_mass;
+    for (int axis = 0; axis < 3; ++axis) {
+      drive_[i].acceleration[axis] = static_cast<Real>(drive[axis]);
+    }
+    if (!drive.allFinite()) bad = std::min(bad, row);
   }
-  if (bad < spheres_.size()) {
-    const Vector3& f = force[bad];
-    throw NumericsError(
-        "particle {}: the force on it is ({}, {}, {}) N; look at the drag and the fluid state "
-        "around it",
-        presented_.id[bad], f.x(), f.y(), f.z());
-  }
+  if (bad < count) refuse_force(presented_.id[bad], force[bad]);
 }
 
-void NativeEngine::advance(double window, int sub_steps, std::span<const Vector3> force,
-                           const Progress& progress) {
+/// One phase of all blocks. True if the list must be made anew.
+template <class Real, bool turning>
+bool NativeEngine<Real, turning>::sweep(Phase phase, double time_step, double spring_step, int from,
+                                        int to, HugeVector<LoadRow>& loads) {
+  List& list = lists_[list_];
+  const Blocks& blocks = list.blocks;
+  const int threads = threads_for(blocks);
+  sums_.resize(static_cast<std::size_t>(threads) * blocks.block_size);
+  BlockPass<Real, turning> all;
+  all.phase = phase;
+  all.time_step = time_step;
+  all.spring_step = spring_step;
+  all.now = bodies_[from].data();
+  all.next = bodies_[to].data();
+  all.load = loads.data();
+  all.drive = drive_.data();
+  all.listed_at = list.listed_at.data();
+  all.origin = list.origin.data();
+  all.reach = list.reach;
+  all.shifts = shifts_.data();
+  all.planes = planes_.data();
+  all.laws = &law_table_;
+  all.root_masses = root_masses_;
+  bool beyond = false;
+#pragma omp parallel for num_threads(threads) schedule(static) reduction(|| : beyond)
+  for (int b = 0; b < blocks.count(); ++b) {
+    BlockPass<Real, turning> pass = all;
+    pass.first = blocks.first(b);
+    pass.last = blocks.last(b);
+    pass.sum = sums_.data() + static_cast<std::ptrdiff_t>(omp_get_thread_num()) * blocks.block_size;
+    pass.contacts = &list.block[b];
+    const bool one = pass_block(pass);
+    beyond = beyond || one;
+  }
+  return beyond;
+}
+
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::advance(double window, int sub_steps,
+                                          std::span<const Vector3> force,
+                                          const Progress& progress) {
   if (has_candidate_) rollback();
   const double time_step = window / sub_steps;
-  check_step(time_step);
+  check_sub_step(limit_, time_step);
   set_drive(force);
-  save();
+  save_springs();
   has_candidate_ = true;
+  int now = (committed_ + 1) % 3;
+  int next = (committed_ + 2) % 3;
+  bool beyond = sweep(Phase::start, time_step, 0, committed_, now, loads_);
   for (int step = 1; step <= sub_steps; ++step) {
-    const Kick kick = step == 1 ? Kick::half : Kick::full;
-    if (move(context(), kick, time_step, 0.5 * skin_, lists_[list_], outbox_, spheres_)) {
-      check_particles(time_step, step, sub_steps);
-      sort_and_list(true);
+    if (beyond) {
+      check(now, time_step, step, sub_steps);
+      sort_and_list(now, next, true);
+      std::swap(now, next);
     }
-    add_contacts(context(), time_step, lists_[list_], outbox_, spheres_);
+    const Phase phase = step < sub_steps ? Phase::drift : Phase::settle;
+    beyond = sweep(phase, time_step, time_step, now, next, candidate_loads_);
+    std::swap(now, next);
     if (progress) progress();
   }
-  settle(context(), time_step, lists_[list_], outbox_, spheres_);
-  check_particles(time_step, sub_steps, sub_steps);
-  present();
+  candidate_ = now;
+  sub_steps_ += sub_steps;
+  check(candidate_, time_step, sub_steps, sub_steps);
+  present(candidate_);
 }
 
-void NativeEngine::commit() {
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::commit() {
+  if (!has_candidate_) return;
   has_candidate_ = false;
-  saved_.valid = false;
+  committed_ = candidate_;
+  committed_list_ = list_;
+  std::swap(loads_, candidate_loads_);
 }
 
 // ---- lists
 // --------------------------------------------------------------------------------------------
 
-/// Wrap what has left through periodic sides, sort all rows into cells.
-void NativeEngine::wrap_and_sort() {
-  const int count = spheres_.size();
+/// Move what has left through periodic sides by whole periods.
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::wrap(HugeVector<BodyRow>& bodies) {
+  const int count = static_cast<int>(bodies.size());
+  resorting_.periods.assign(count, {});
+  if (!any_periodic_) return;
   std::vector<std::array<std::int8_t, 3>> periods(count);
-  for (int i = 0; any_periodic_ && i < count; ++i) {
-    Eigen::Map<Vector3> position(spheres_.body[i].position);
+  for (int i = 0; i < count; ++i) {
+    Eigen::Map<Vector3> position(bodies[i].position);
     const Vector3 moved = wrapped(domain_, position);
     for (int axis = 0; axis < 3; ++axis) {
       const double apart = (position[axis] - moved[axis]) / domain_.length(axis);
@@ -224,163 +302,153 @@ void NativeEngine::wrap_and_sort() {
     }
     position = moved;
   }
-  const double* data = count > 0 ? spheres_.body.front().position : nullptr;
-  grid_.sort(domain_, largest_diameter_ + skin_,
-             {data, static_cast<int>(sizeof(Body) / sizeof(double)), count});
-  sorted_ = spheres_;
-  sorted_drive_ = drive_;
-  resorting_.previous = grid_.order();
-  resorting_.periods.resize(count);
+  resorting_.periods.swap(periods);
+}
+
+/// Sort the rows of `from` into those of `to` and list anew.
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::sort_and_list(int from, int to, bool carry_springs) {
+  HugeVector<BodyRow>& unsorted = bodies_[from];
+  HugeVector<BodyRow>& sorted = bodies_[to];
+  const int count = static_cast<int>(unsorted.size());
+  wrap(unsorted);
+  constexpr int stride = sizeof(BodyRow) / sizeof(double);
+  const double* data = count > 0 ? unsorted.front().position : nullptr;
+  levels_.sort(domain_, skin_, {data, stride, count}, {data + 3, stride});
+
+  int made = 0;
+  while (made == list_ || (has_candidate_ && made == committed_list_)) ++made;
+  const List& before = lists_[list_];
+  List& list = lists_[made];
+  list.blocks = {count, std::clamp(count / least_blocks, smallest_block, largest_block)};
+  list.row.resize(count);
+  sorted_drive_.resize(count);
+  const std::vector<int>& order = levels_.order();
+  std::vector<std::array<std::int8_t, 3>> periods(count);
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int place = 0; place < count; ++place) {
-    const int from = grid_.order()[place];
-    sorted_.body[place] = spheres_.body[from];
-    sorted_.spin[place] = spheres_.spin[from];
-    sorted_.row[place] = spheres_.row[from];
-    sorted_.listed_at[place] = Eigen::Map<const Vector3>(spheres_.body[from].position);
-    sorted_drive_[place] = drive_[from];
-    resorting_.periods[place] = periods[from];
+    sorted[place] = unsorted[order[place]];
+    sorted_drive_[place] = drive_[order[place]];
+    list.row[place] = before.row[order[place]];
+    periods[place] = resorting_.periods[order[place]];
   }
-  std::swap(spheres_, sorted_);
   std::swap(drive_, sorted_drive_);
-}
-
-/// Sort and list anew. The loads are those of the old order after this: `add_contacts` must follow.
-void NativeEngine::sort_and_list(bool carry_springs) {
-  wrap_and_sort();
-  std::size_t made = 0;
-  while (made == list_ || (saved_.valid && made == saved_.list)) ++made;
-  const ContactScope scope{domain_, laws_, presented_.material, skin_, friction_, threads_};
-  make_contact_list(scope, spheres_, blocks_, grid_, resorting_,
-                    carry_springs ? &lists_[list_] : nullptr, lists_[made]);
+  resorting_.periods.swap(periods);
+  resorting_.previous = order;
+  const ContactScope scope{domain_, laws_, skin_, turning ? 3 : 0, threads_};
+  make_contact_list<Real, turning>(scope, sorted, presented_.material, levels_, resorting_,
+                                   carry_springs ? &before : nullptr, list);
   list_ = made;
-  outbox_.resize(lists_[list_].outbox_size);
+  ++rebuilds_;
 }
 
-// ---- checks
-// -------------------------------------------------------------------------------------------
+// ---- checks, committed and candidate
+// ------------------------------------------------------------------
 
-bool NativeEngine::is_sound(int place, double time_step) const {
-  const Body& body = spheres_.body[place];
-  const Eigen::Map<const Vector3> position(body.position);
-  const Eigen::Map<const Vector3> velocity(body.velocity);
-  if (!position.allFinite() || !velocity.allFinite()) return false;
-  if (lost_through(domain_, position, body.radius) >= 0) return false;
-  // Faster than this it could pass through what it should touch. Where nothing can touch, let it
-  // fly.
-  return !std::isfinite(limit_.longest) || velocity.norm() * time_step <= body.radius;
-}
-
-void NativeEngine::check_particles(double time_step, int sub_step, int sub_steps) const {
-  const int none = spheres_.size();
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::check(int bodies, double time_step, int sub_step,
+                                        int sub_steps) const {
+  const HugeVector<BodyRow>& rows = bodies_[bodies];
+  const std::vector<int>& row_of = lists_[list_].row;
+  const int none = presented_.size();
+  const bool may_touch = std::isfinite(limit_.longest);
   int bad = none;
+  const auto motion = [&](int i) {
+    const Real* v = rows[i].velocity;
+    return Motion{Eigen::Map<const Vector3>(rows[i].position),
+                  Vector3(static_cast<double>(v[0]), static_cast<double>(v[1]),
+                          static_cast<double>(v[2])),
+                  rows[i].radius};
+  };
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < none; ++i) {
-    if (!is_sound(i, time_step)) bad = std::min(bad, spheres_.row[i]);
+    if (!is_sound(domain_, motion(i), may_touch ? time_step : 0)) bad = std::min(bad, row_of[i]);
   }
-  if (bad < none) refuse(bad, time_step, sub_step, sub_steps);
+  if (bad == none) return;
+  const auto at = std::find(row_of.begin(), row_of.end(), bad) - row_of.begin();
+  refuse(domain_, presented_.id[bad], motion(static_cast<int>(at)),
+         {time_step, sub_step, sub_steps});
 }
 
-void NativeEngine::refuse(int row, double time_step, int sub_step, int sub_steps) const {
-  const auto place = static_cast<std::size_t>(
-      std::find(spheres_.row.begin(), spheres_.row.end(), row) - spheres_.row.begin());
-  const Body& body = spheres_.body[place];
-  const Eigen::Map<const Vector3> x(body.position);
-  const Eigen::Map<const Vector3> v(body.velocity);
-  const std::string who = fmt::format(
-      "particle {} at ({:.6g}, {:.6g}, {:.6g}) m with velocity ({:.4g}, {:.4g}, {:.4g}) m/s, "
-      "sub-step {} "
-      "of {} of this window:",
-      presented_.id[row], x.x(), x.y(), x.z(), v.x(), v.y(), v.z(), sub_step, sub_steps);
-  if (!x.allFinite() || !v.allFinite()) {
-    throw NumericsError(
-        "{} position or velocity is not finite; two centres in one place, or contacts too stiff "
-        "for the "
-        "time step: look at the insertion, shorten particles.time_step",
-        who);
-  }
-  const int side = lost_through(domain_, x, body.radius);
-  if (side >= 0 && domain_.sides[side] == SideKind::open) {
-    throw NumericsError(
-        "{} left the domain through {}, which is open; move that side out (fluid.mesh.box) or "
-        "close it",
-        who, side_name(side));
-  }
-  if (side >= 0) {
-    throw NumericsError(
-        "{} was pressed through the wall {}; raise the normal_stiffness between its material and "
-        "the "
-        "walls, or shorten particles.time_step",
-        who, side_name(side));
-  }
-  throw NumericsError(
-      "{} moves by {:.3g} of its radius in one sub-step, so it could pass through others; set "
-      "particles.time_step to at most {:.3g} s",
-      who, v.norm() * time_step / body.radius, body.radius / v.norm());
-}
-
-// ---- committed and candidate
-// --------------------------------------------------------------------------
-
-void NativeEngine::present() {
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::present(int bodies) {
+  const HugeVector<BodyRow>& rows = bodies_[bodies];
+  const List& list = lists_[list_];
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (int i = 0; i < spheres_.size(); ++i) {
-    const int row = spheres_.row[i];
-    const Eigen::Map<const Vector3> position(spheres_.body[i].position);
+  for (int i = 0; i < presented_.size(); ++i) {
+    const BodyRow& body = rows[i];
+    const int row = list.row[i];
+    const Eigen::Map<const Vector3> position(body.position);
     presented_.position[row] = any_periodic_ ? wrapped(domain_, position) : Vector3(position);
-    presented_.velocity[row] = Eigen::Map<const Vector3>(spheres_.body[i].velocity);
-    presented_.spin[row] = Eigen::Map<const Vector3>(spheres_.spin[i].rate);
+    for (int axis = 0; axis < 3; ++axis) {
+      presented_.velocity[row][axis] = static_cast<double>(body.velocity[axis]);
+      if constexpr (turning) {
+        presented_.spin[row][axis] = static_cast<double>(body.radius_spin[axis]) / body.radius;
+      }
+    }
   }
 }
 
-void NativeEngine::save() {
-  if (saved_.valid) return;
-  const int count = spheres_.size();
-  const ContactList& list = lists_[list_];
-  saved_.spheres.body.resize(count);
-  saved_.spheres.spin.resize(count);
-  saved_.spheres.load.resize(count);
-  saved_.spheres.listed_at.resize(count);
-  saved_.spheres.row.resize(count);
-  saved_.pair_springs.resize(blocks_.count());
-  saved_.wall_springs.resize(blocks_.count());
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::save_springs() {
+  if constexpr (!turning) return;
+  const List& list = lists_[list_];
+  saved_springs_.resize(list.block.size());
 #pragma omp parallel for num_threads(threads_) schedule(static)
-  for (int b = 0; b < blocks_.count(); ++b) {
-    const int first = blocks_.first(b);
-    const int last = blocks_.last(b);
-    const auto copy = [&](const auto& from, auto& to) {
-      std::copy(from.begin() + first, from.begin() + last, to.begin() + first);
-    };
-    copy(spheres_.body, saved_.spheres.body);
-    copy(spheres_.spin, saved_.spheres.spin);
-    copy(spheres_.load, saved_.spheres.load);
-    copy(spheres_.listed_at, saved_.spheres.listed_at);
-    copy(spheres_.row, saved_.spheres.row);
-    saved_.pair_springs[b] = list.blocks[b].pair_springs;
-    saved_.wall_springs[b] = list.blocks[b].wall_springs;
+  for (int b = 0; b < list.blocks.count(); ++b) {
+    const ContactBlock<Real>& block = list.block[b];
+    saved_springs_[b] = {block.inner_springs, block.outer_springs, block.image_springs,
+                         block.plane_springs};
   }
-  saved_.list = list_;
-  saved_.valid = true;
 }
 
-void NativeEngine::rollback() {
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::rollback() {
   if (!has_candidate_) return;
   has_candidate_ = false;
-  spheres_ = saved_.spheres;
-  list_ = saved_.list;
-  for (int b = 0; b < blocks_.count(); ++b) {
-    lists_[list_].blocks[b].pair_springs = saved_.pair_springs[b];
-    lists_[list_].blocks[b].wall_springs = saved_.wall_springs[b];
+  list_ = committed_list_;
+  for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
+    ContactBlock<Real>& block = lists_[list_].block[b];
+    block.inner_springs = saved_springs_[b].inner;
+    block.outer_springs = saved_springs_[b].outer;
+    block.image_springs = saved_springs_[b].image;
+    block.plane_springs = saved_springs_[b].plane;
   }
-  outbox_.resize(lists_[list_].outbox_size);
-  present();
+  candidate_ = committed_;
+  present(committed_);
+}
+
+template <class Real, bool turning>
+EngineCounters NativeEngine<Real, turning>::counters() const {
+  EngineCounters counters{sub_steps_, rebuilds_, 0};
+  for (const ContactBlock<Real>& block : lists_[list_].block) {
+    // What two blocks hold is one pair.
+    counters.list_pairs += static_cast<std::int64_t>(
+        block.inner.size() + (block.outer.size() + block.image.size()) / 2);
+  }
+  return counters;
+}
+
+template <class Real>
+std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh,
+                                            ParticleState initial) {
+  ContactLaws laws(scene.particles);
+  if (laws.any_friction()) {
+    return std::make_unique<NativeEngine<Real, true>>(scene, mesh, std::move(laws),
+                                                      std::move(initial));
+  }
+  return std::make_unique<NativeEngine<Real, false>>(scene, mesh, std::move(laws),
+                                                     std::move(initial));
 }
 
 }  // namespace
 
 std::unique_ptr<ParticleEngine> make_native_engine(const Scene& scene, const Mesh& mesh,
                                                    ParticleState initial) {
-  return std::make_unique<NativeEngine>(scene, mesh, std::move(initial));
+  if (scene.particles.numerics.precision == Precision::mixed) {
+    return make_engine<float>(scene, mesh, std::move(initial));
+  }
+  return make_engine<double>(scene, mesh, std::move(initial));
 }
 
 }  // namespace fluxpact

@@ -1,57 +1,62 @@
-// The particles as the native engine holds them: rows in cell order, sized for the cache lines that
-// a contact touches.
+// The particles as the native engine holds them: rows in cell order, laid out for the vector
+// registers that read them. `Real` is the type of all but positions: double, or float where the
+// scene asks for mixed precision. `turning`: spins are followed (some contact has friction).
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <algorithm>
 
-#include "proto/base/vector.hpp"
+#include "dem_server/backends/native/huge_vector.hpp"
 
 namespace fluxpact {
 
-/// What a contact reads of each partner, in one cache line. Between sub-steps of a window the
-/// velocity is half a step behind the position.
-struct alignas(64) Body {
-  double position[3];   ///< [m]
-  double radius;        ///< [m]
-  double velocity[3];   ///< [m/s]
-  double inverse_mass;  ///< [1/kg]
+/// What a contact reads of each partner. Between sub-steps of a window the velocity is half a step
+/// behind the position.
+template <class Real, bool turning>
+struct alignas(4 * sizeof(Real)) Body {
+  double position[3];    ///< [m]
+  double radius;         ///< [m]
+  Real velocity[3];      ///< [m/s]
+  Real inverse_mass;     ///< [1/kg]; 0 holds the particle in place
+  Real radius_spin[3];   ///< [m/s] radius times spin
+  Real inverse_radius;   ///< [1/m]
 };
 
-struct alignas(32) Spin {
-  double rate[3];          ///< [rad/s]
-  double inverse_inertia;  ///< [1/(kg m²)]
+template <class Real>
+struct alignas(4 * sizeof(Real)) Body<Real, false> {
+  double position[3];
+  double radius;
+  Real velocity[3];
+  Real inverse_mass;
 };
 
 /// Sum over the contacts of a particle. The lever arm is the same for all of them, its radius, so
-/// the torque is the radius times `lever_force`.
-struct alignas(64) Load {
-  double force[3];        ///< [N]
-  double lever_force[3];  ///< [N] Σ (arm direction) × (tangential force)
+/// the torque is the radius times `lever`.
+template <class Real, bool turning>
+struct alignas(8 * sizeof(Real)) Load {
+  Real force[4];  ///< [N]; the last number is 0
+  Real lever[4];  ///< [N] Σ (arm direction) × (tangential force); the last number is 0
 };
 
-/// All that a window changes for each particle. Rows of all arrays are in the same (cell) order.
-struct Spheres {
-  std::vector<Body> body;
-  std::vector<Spin> spin;
-  std::vector<Load> load;          ///< of the newest positions, complete at the ends of a window
-  std::vector<Vector3> listed_at;  ///< [m] position when the contact list was made
-  std::vector<int> row;            ///< row of the presented state, which is ascending by id
+template <class Real>
+struct alignas(4 * sizeof(Real)) Load<Real, false> {
+  Real force[4];
+};
 
-  int size() const { return static_cast<int>(body.size()); }
+/// What drives a particle beside its contacts, constant over a window [m/s²]; the last number is 0.
+template <class Real>
+struct alignas(4 * sizeof(Real)) Drive {
+  Real acceleration[4];
 };
 
 /// Equal ranges of particles: the unit of work. They depend on the number of particles only, and
-/// each sum runs in the order of the blocks, so that any number of threads gives the same bits.
+/// each sum runs within a block, so that any number of threads gives the same bits.
 struct Blocks {
   int particles = 0;
   int block_size = 1;
 
   int count() const { return (particles + block_size - 1) / block_size; }
   int first(int block) const { return block * block_size; }
-  int last(int block) const {
-    return first(block) + block_size < particles ? first(block) + block_size : particles;
-  }
+  int last(int block) const { return std::min(first(block) + block_size, particles); }
   int holding(int particle) const { return particle / block_size; }
 };
 

@@ -1,0 +1,54 @@
+// One sub-step of one block of particles, in vector registers: the forces of all its contacts, then
+// its velocities and positions. The hot loop of the whole program; the instruction set is chosen
+// when it runs.
+//
+//   start   half a kick with the loads of the window before, then a drift
+//   drift   contacts at the new positions, a whole kick, a drift
+//   settle  contacts, half a kick: positions and velocities are at the same time; loads are kept
+//
+// A block reads the positions and velocities of its neighbours from `now` and writes its own to
+// `next`, so blocks may go in any order and at once.
+#pragma once
+
+#include "dem_server/backends/native/contact_list.hpp"
+
+namespace fluxpact {
+
+enum class Phase { start, drift, settle };
+
+/// Roots of effective masses [kg^0.5] where they are the same for all contacts; 0 where they are not.
+struct RootMasses {
+  double pair = 0;
+  double wall = 0;
+};
+
+template <class Real, bool turning>
+struct BlockPass {
+  Phase phase = Phase::start;
+  double time_step = 0;    ///< [s]
+  double spring_step = 0;  ///< [s] by which the springs grow
+  int first = 0;           ///< particles of the block
+  int last = 0;
+  const Body<Real, turning>* now = nullptr;  ///< all particles
+  Body<Real, turning>* next = nullptr;       ///< rows of the block are written
+  Load<Real, turning>* load = nullptr;       ///< start: read; settle: rows of the block are written
+  Load<Real, turning>* sum = nullptr;        ///< room for the loads of a block
+  const Drive<Real>* drive = nullptr;
+  const ListedAt* listed_at = nullptr;
+  const double* origin = nullptr;  ///< [m] of listed_at
+  double reach = 0;                ///< [m] from listed_at, beyond which the list may miss a contact
+  ContactBlock<Real>* contacts = nullptr;
+  const double (*shifts)[4] = nullptr;  ///< [m] displacement of each Shift
+  const double (*planes)[4] = nullptr;  ///< of each side: unit normal into the domain, n·x on it [m]
+  const LawTable<Real>* laws = nullptr;
+  RootMasses root_masses;
+};
+
+/// Returns true if, after a drift, some particle is farther than `reach` from where the list was
+/// made (or not finite).
+bool pass_block(const BlockPass<double, false>& pass);
+bool pass_block(const BlockPass<double, true>& pass);
+bool pass_block(const BlockPass<float, false>& pass);
+bool pass_block(const BlockPass<float, true>& pass);
+
+}  // namespace fluxpact

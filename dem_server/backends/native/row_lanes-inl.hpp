@@ -1,0 +1,250 @@
+// Rows of four numbers turned into vector lanes and back: lane k of the four vectors holds the four
+// numbers of row k. Included once for each instruction set, like contact_force-inl.hpp.
+#if defined(FLUXPACT_ROW_LANES_INL_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FLUXPACT_ROW_LANES_INL_
+#undef FLUXPACT_ROW_LANES_INL_
+#else
+#define FLUXPACT_ROW_LANES_INL_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace fluxpact::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Four vectors: of rows while they are read, of components afterwards.
+template <class V>
+struct Quad {
+  V a, b, c, d;
+};
+
+template <class D>
+inline constexpr int lanes_of = static_cast<int>(hn::MaxLanes(D()));
+
+/// True where the registers hold whole rows of four numbers, one or two of them.
+template <class D>
+inline constexpr bool holds_rows = lanes_of<D> == 4 || lanes_of<D> == 8;
+
+// ---- one row ----
+
+#if HWY_MAX_BYTES >= 32
+template <class T>
+using Row = hn::Vec<hn::FixedTag<T, 4>>;
+
+template <class T>
+HWY_INLINE Row<T> load_row(const T* row) {
+  return hn::Load(hn::FixedTag<T, 4>(), row);
+}
+template <class T>
+HWY_INLINE void store_row(Row<T> value, T* row) {
+  hn::Store(value, hn::FixedTag<T, 4>(), row);
+}
+template <class T>
+HWY_INLINE Row<T> same_row(T value) {
+  return hn::Set(hn::FixedTag<T, 4>(), value);
+}
+/// a b + c
+template <class V>
+HWY_INLINE V multiply_add(V a, V b, V c) {
+  return hn::MulAdd(a, b, c);
+}
+template <class V>
+HWY_INLINE V subtract(V a, V b) {
+  return hn::Sub(a, b);
+}
+template <class T>
+HWY_INLINE Row<double> widened(Row<T> row) {
+  if constexpr (sizeof(T) == sizeof(double)) {
+    return row;
+  } else {
+    return hn::PromoteTo(hn::FixedTag<double, 4>(), row);
+  }
+}
+HWY_INLINE double square_norm(Row<double> row) {
+  const hn::FixedTag<double, 4> d;
+  return hn::GetLane(hn::SumOfLanes(d, hn::Mul(row, row)));
+}
+#else  // registers are narrower than a row
+template <class T>
+struct Row {
+  T value[4];
+};
+template <class T>
+HWY_INLINE Row<T> load_row(const T* row) {
+  return {{row[0], row[1], row[2], row[3]}};
+}
+template <class T>
+HWY_INLINE void store_row(Row<T> value, T* row) {
+  for (int c = 0; c < 4; ++c) row[c] = value.value[c];
+}
+template <class T>
+HWY_INLINE Row<T> same_row(T value) {
+  return {{value, value, value, value}};
+}
+template <class T>
+HWY_INLINE Row<T> multiply_add(const Row<T>& a, const Row<T>& b, const Row<T>& c) {
+  Row<T> sum = c;
+  for (int k = 0; k < 4; ++k) sum.value[k] += a.value[k] * b.value[k];
+  return sum;
+}
+template <class T>
+HWY_INLINE Row<T> subtract(const Row<T>& a, const Row<T>& b) {
+  Row<T> difference = a;
+  for (int k = 0; k < 4; ++k) difference.value[k] -= b.value[k];
+  return difference;
+}
+template <class T>
+HWY_INLINE Row<double> widened(const Row<T>& row) {
+  Row<double> wide{};
+  for (int c = 0; c < 4; ++c) wide.value[c] = static_cast<double>(row.value[c]);
+  return wide;
+}
+HWY_INLINE double square_norm(const Row<double>& row) {
+  double sum = 0;
+  for (const double number : row.value) sum += number * number;
+  return sum;
+}
+#endif
+
+// ---- one row a lane ----
+
+#if HWY_MAX_BYTES >= 32
+
+/// Four rows in each half of the lanes (8 lanes: rows k and k + 4 side by side) to components, or
+/// back: the same shuffles do both.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> transpose(D d, const Quad<V>& rows) {
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    const V ab_even = hn::InterleaveLower(d, rows.a, rows.b);  // a0 b0 | a2 b2
+    const V ab_odd = hn::InterleaveUpper(d, rows.a, rows.b);   // a1 b1 | a3 b3
+    const V cd_even = hn::InterleaveLower(d, rows.c, rows.d);
+    const V cd_odd = hn::InterleaveUpper(d, rows.c, rows.d);
+    return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(cd_even), ab_even),
+            hn::OddEvenBlocks(hn::SwapAdjacentBlocks(cd_odd), ab_odd),
+            hn::OddEvenBlocks(cd_even, hn::SwapAdjacentBlocks(ab_even)),
+            hn::OddEvenBlocks(cd_odd, hn::SwapAdjacentBlocks(ab_odd))};
+  } else {
+    const hn::RepartitionToWide<D> wide;
+    const auto ab_low = hn::BitCast(wide, hn::InterleaveLower(d, rows.a, rows.b));  // a0 b0 a1 b1
+    const auto ab_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows.a, rows.b));
+    const auto cd_low = hn::BitCast(wide, hn::InterleaveLower(d, rows.c, rows.d));
+    const auto cd_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows.c, rows.d));
+    return {hn::BitCast(d, hn::InterleaveLower(wide, ab_low, cd_low)),
+            hn::BitCast(d, hn::InterleaveUpper(wide, ab_low, cd_low)),
+            hn::BitCast(d, hn::InterleaveLower(wide, ab_high, cd_high)),
+            hn::BitCast(d, hn::InterleaveUpper(wide, ab_high, cd_high))};
+  }
+}
+
+/// Rows at the given addresses, side by side as `transpose` wants them.
+template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> load_rows(D d, const T* const* row) {
+  if constexpr (lanes_of<D> == 8) {
+    const hn::Half<D> half;
+    const auto two = [&](int k) {
+      return hn::Combine(d, hn::LoadU(half, row[k + 4]), hn::LoadU(half, row[k]));
+    };
+    return {two(0), two(1), two(2), two(3)};
+  } else {
+    return {hn::LoadU(d, row[0]), hn::LoadU(d, row[1]), hn::LoadU(d, row[2]),
+            hn::LoadU(d, row[3])};
+  }
+}
+
+#endif
+
+/// Components of sums of two rows: first[c] + second[c], with the sign of second[c] changed where
+/// `flip` holds -0.0 (the same four numbers again and again, for as many lanes as there are).
+template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* second, const T* flip) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (holds_rows<D>) {
+    const V sign = hn::Load(d, flip);
+    const Quad<V> a = load_rows(d, first);
+    const Quad<V> b = load_rows(d, second);
+    return transpose(d, Quad<V>{hn::Add(a.a, hn::Xor(sign, b.a)), hn::Add(a.b, hn::Xor(sign, b.b)),
+                                hn::Add(a.c, hn::Xor(sign, b.c)),
+                                hn::Add(a.d, hn::Xor(sign, b.d))});
+  }
+#endif
+  T sum[4][lanes_of<D>];
+  for (int lane = 0; lane < lanes_of<D>; ++lane) {
+    for (int c = 0; c < 4; ++c) {
+      sum[c][lane] = std::signbit(flip[c]) ? first[lane][c] - second[lane][c]
+                                           : first[lane][c] + second[lane][c];
+    }
+  }
+  return {hn::LoadU(d, sum[0]), hn::LoadU(d, sum[1]), hn::LoadU(d, sum[2]), hn::LoadU(d, sum[3])};
+}
+
+/// Components of the rows at the given addresses.
+template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> gather_rows(D d, const T* const* row) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (holds_rows<D>) return transpose(d, load_rows(d, row));
+#endif
+  T lanes[4][lanes_of<D>];
+  for (int lane = 0; lane < lanes_of<D>; ++lane) {
+    for (int c = 0; c < 4; ++c) lanes[c][lane] = row[lane][c];
+  }
+  return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]),
+          hn::LoadU(d, lanes[3])};
+}
+
+/// Components to rows: rows[stride k ... stride k + 2] of lane k; the fourth number of each is 0.
+template <int stride, class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE void store_rows(D d, V x, V y, V z, T* HWY_RESTRICT rows) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (holds_rows<D>) {
+    const Quad<V> t = transpose(d, Quad<V>{x, y, z, hn::Zero(d)});
+    const auto put = [&](V v, int k) {
+      if constexpr (lanes_of<D> == 8) {
+        const hn::Half<D> half;
+        hn::Store(hn::LowerHalf(half, v), half, rows + stride * k);
+        hn::Store(hn::UpperHalf(half, v), half, rows + stride * (k + 4));
+      } else {
+        hn::Store(v, d, rows + stride * k);
+      }
+    };
+    put(t.a, 0);
+    put(t.b, 1);
+    put(t.c, 2);
+    put(t.d, 3);
+    return;
+  }
+#endif
+  T lanes[3][lanes_of<D>];
+  hn::StoreU(x, d, lanes[0]);
+  hn::StoreU(y, d, lanes[1]);
+  hn::StoreU(z, d, lanes[2]);
+  for (int lane = 0; lane < lanes_of<D>; ++lane) {
+    for (int c = 0; c < 3; ++c) rows[stride * lane + c] = lanes[c][lane];
+    rows[stride * lane + 3] = 0;
+  }
+}
+
+/// sum += row of so many numbers (4 or 8), or, if `mirrored`, its first four numbers change sign.
+template <int numbers, bool mirrored, class T>
+HWY_INLINE void add_row(const T* HWY_RESTRICT row, T* HWY_RESTRICT sum) {
+#if HWY_MAX_BYTES >= 32
+  constexpr int most = HWY_MAX_BYTES / static_cast<int>(sizeof(T));
+  const hn::FixedTag<T, (numbers < most ? numbers : most)> d;
+  alignas(64) static constexpr T mirror[8] = {-T(0), -T(0), -T(0), -T(0), 0, 0, 0, 0};
+  for (int at = 0; at < numbers; at += lanes_of<decltype(d)>) {
+    auto value = hn::Load(d, row + at);
+    if constexpr (mirrored) value = hn::Xor(value, hn::Load(d, mirror + at));
+    hn::Store(hn::Add(hn::Load(d, sum + at), value), d, sum + at);
+  }
+#else
+  for (int c = 0; c < numbers; ++c) sum[c] += mirrored && c < 4 ? -row[c] : row[c];
+#endif
+}
+
+}  // namespace fluxpact::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

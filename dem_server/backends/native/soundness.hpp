@@ -1,0 +1,39 @@
+// What a particle must be for the engine to go on, and the errors that say what is wrong.
+#pragma once
+
+#include "dem_server/backends/domain.hpp"
+#include "dem_server/backends/native/contact_law.hpp"
+
+namespace fluxpact {
+
+/// One particle at one time.
+struct Motion {
+  Vector3 position;  ///< [m]
+  Vector3 velocity;  ///< [m/s]
+  double radius;     ///< [m]
+};
+
+/// For messages.
+struct SubStep {
+  double time_step;  ///< [s]
+  int number, of;
+};
+
+/// Finite, inside, and not so fast that it moves by more than its radius in `time_step` [s] (0: as
+/// fast as it likes): it could then pass through what it should touch.
+bool is_sound(const Domain& domain, const Motion& motion, double time_step);
+
+/// Throws the NumericsError of a particle that is not sound.
+[[noreturn]] void refuse(const Domain& domain, std::int64_t id, const Motion& motion,
+                         const SubStep& sub_step);
+
+/// Throws the NumericsError of a force that is not finite.
+[[noreturn]] void refuse_force(std::int64_t id, const Vector3& force);
+
+/// Throws ConfigError if a sub-step [s] is longer than the limit.
+void check_sub_step(const StepLimit& limit, double time_step);
+
+/// Throws ConfigError if a particle could meet its own image: a period shorter than `shortest` [m].
+void check_periods(const Domain& domain, double largest_diameter, double shortest);
+
+}  // namespace fluxpact

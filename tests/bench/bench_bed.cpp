@@ -71,7 +71,7 @@ BenchBed settled_block(int count) {
   for (const Vector3& centre : *centres) {
     add(block.particles, centre, Vector3::Zero(), 0.5 * bench_diameter);
   }
-  Scene scene = bench_scene(block, 1);
+  Scene scene = bench_scene(block, 1, Precision::full);
   scene.particles.time_step = settling_step;
   scene.coupling.window = settling_step;
   const auto engine =
@@ -88,7 +88,7 @@ int cells_of(double length, double width) { return std::max(1, static_cast<int>(
 
 }  // namespace
 
-Scene bench_scene(const BenchBed& bed, int threads) {
+Scene bench_scene(const BenchBed& bed, int threads, Precision precision) {
   Scene scene;
   scene.coupling.window = bench_steps_per_window * bench_time_step;
   scene.fluid.mesh.box = {Vector3::Zero(), bed.upper, {2, 2, 2}};
@@ -104,6 +104,7 @@ Scene bench_scene(const BenchBed& bed, int threads) {
     scene.particles.contact.pairs.push_back(pair);
   }
   scene.particles.numerics.threads = threads;
+  scene.particles.numerics.precision = precision;
   return scene;
 }
 

@@ -26,7 +26,7 @@ inline constexpr int bench_steps_per_window = 20;    ///< as between two exchang
 inline constexpr int bench_block_particles = 10000;  ///< of the block that is repeated
 
 /// A scene whose native engine runs this bed: k_t = 2/7 k_n, springs and dashpots.
-Scene bench_scene(const BenchBed& bed, int threads);
+Scene bench_scene(const BenchBed& bed, int threads, Precision precision);
 
 /// A bed between walls from HDF5 (datasets x, y, z, vx, vy, vz, radius) or CSV
 /// (x,y,z,vx,vy,vz,diameter) in the box [0, upper]. Throws ConfigError or SystemError.

@@ -20,6 +20,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <map>
 
 #include "dem_server/backends/native/native_engine.hpp"
 #include "proto/mesh/box.hpp"
@@ -36,6 +37,7 @@ struct Options {
   std::string write;
   std::vector<int> particles;
   std::vector<int> threads{1};
+  std::vector<Precision> precisions{Precision::full};
   int steps = 480;
   int repeats = 5;
 };
@@ -111,9 +113,9 @@ void print_state(const BenchBed& bed, const ParticleState& state) {
       height, top, energy, pairs.contacts, pairs.near);
 }
 
-void run_case(const BenchBed& bed, int threads, const Options& options) {
+void run_case(const BenchBed& bed, int threads, Precision precision, const Options& options) {
   const int count = bed.particles.size();
-  const Scene scene = bench_scene(bed, threads);
+  const Scene scene = bench_scene(bed, threads, precision);
   const Mesh mesh = make_box(scene.fluid.mesh);
   ParticleState start = bed.particles;
   forget_peak_memory();
@@ -122,17 +124,24 @@ void run_case(const BenchBed& bed, int threads, const Options& options) {
   run_windows(*engine, bench_steps_per_window);
   const Rates rates = measure(*engine, options);
   const double bytes = memory("VmHWM") - before;
-  fmt::print("{:>8} {:>3} | {:>7.2f} {:>7.2f} | {:>7.2f} {:>7.2f} | {:>6.0f} {:>6.0f}\n", count,
-             threads, median(rates.wall), best(rates.wall), median(rates.processor),
-             best(rates.processor), bytes / count, memory("VmHWM") / count);
+  const EngineCounters counters = engine->counters();
+  const double lists = static_cast<double>(std::max<std::int64_t>(1, counters.rebuilds));
+  fmt::print(
+      "{:>8} {:>3} {:>6} | {:>7.2f} {:>7.2f} | {:>7.2f} {:>7.2f} | {:>6.0f} {:>6.0f} | {:>5.0f} "
+      "{:>5.2f}\n",
+      count, threads, precision == Precision::mixed ? "mixed" : "double", median(rates.wall),
+      best(rates.wall), median(rates.processor), best(rates.processor), bytes / count,
+      memory("VmHWM") / count, static_cast<double>(counters.sub_steps) / lists,
+      static_cast<double>(counters.list_pairs) / count);
   print_state(bed, engine->particles());
 }
 
-int run_in_process_of_its_own(const BenchBed& bed, int threads, const Options& options) {
+int run_in_process_of_its_own(const BenchBed& bed, int threads, Precision precision,
+                              const Options& options) {
   std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
-    run_case(bed, threads, options);
+    run_case(bed, threads, precision, options);
     std::fflush(stdout);
     std::_Exit(0);
   }
@@ -143,9 +152,9 @@ int run_in_process_of_its_own(const BenchBed& bed, int threads, const Options& o
 
 int run_all(const Options& options) {
   fmt::print(
-      "         |     | M particle-steps a second of   | bytes a particle\n"
-      "         |     |      wall     |    processor    | engine, whole\n"
-      "particles  thr |  median  best |  median   best  | at their peak\n");
+      "                    | M particle-steps a second of    | bytes a       | steps a list,\n"
+      "                    |      wall       |   processor   | particle:     | pairs a\n"
+      "particles thr  with |  median    best |  median  best | engine, whole | particle in it\n");
   int failed = 0;
   const std::vector<int> sizes = options.bed.empty() ? options.particles : std::vector<int>{0};
   for (const int size : sizes) {
@@ -157,7 +166,9 @@ int run_all(const Options& options) {
       continue;
     }
     for (const int threads : options.threads) {
-      failed += run_in_process_of_its_own(bed, threads, options);
+      for (const Precision precision : options.precisions) {
+        failed += run_in_process_of_its_own(bed, threads, precision, options);
+      }
     }
   }
   return failed == 0 ? 0 : 1;
@@ -175,6 +186,10 @@ int main(int argc, char** argv) {
                "The bed in motion, about one new list in 50 steps");
   app.add_option("--write", options.write, "Write the bed as CSV instead of running it");
   app.add_option("--threads", options.threads, "Numbers of threads");
+  const std::map<std::string, Precision> precisions{{"double", Precision::full},
+                                                    {"mixed", Precision::mixed}};
+  app.add_option("--precision", options.precisions, "double, mixed")
+      ->transform(CLI::CheckedTransformer(precisions));
   app.add_option("--steps", options.steps, "Timed steps of a repeat, in windows of 20")
       ->check(CLI::PositiveNumber);
   app.add_option("--repeats", options.repeats, "Timed repeats")->check(CLI::PositiveNumber);

@@ -2,23 +2,26 @@
 """The native particle engine beside LAMMPS and LIGGGHTS: the same bed, law, steps and core.
 
     compare_dem.py --bench build/tests/dem_bench --bed FILE.h5|CSV [--fluidised] [--mixed] [--rounds 3]
-                   [--steps 480] [--core 0] [--prefix "flock -x LOCK"] [--keep DIRECTORY]
+                   [--steps 480] [--core 0] [--lock FILE] [--keep DIRECTORY]
 
 Spheres of 2 mm (2250 kg/m3) in 0.25 x 0.02 x 0.6 m, linear springs and dashpots with friction (k_n 1000 N/m, k_t 2/7 k_n, e 0.9, mu 0.3), five
 plane walls, gravity, 5 us. Each engine runs 20 steps that are not timed, then `--steps`; the engines take turns, one core each. First all
 must tell of the same bed: mean height, top and kinetic energy at the end. Engines that are not installed (Debian: lammps, liggghts) are
-left out, and said so. The rates are those of wall time on an otherwise quiet machine.
+left out, and said so. Of the others' loop times, the share is taken for which they had the core: measure on a quiet machine.
 """
 import argparse
 import csv
+import fcntl
 import math
+import os
 import re
-import shlex
+import resource
 import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 DIAMETER, DENSITY, STIFFNESS, RESTITUTION, FRICTION = 2e-3, 2250.0, 1000.0, 0.9, 0.3
@@ -113,24 +116,30 @@ def write_data(rows, path, types):
 
 
 def run(command, args):
-    whole = shlex.split(args.prefix) + ["taskset", "-c", str(args.core)] + command
-    done = subprocess.run(whole, capture_output=True, text=True)
+    """What the program wrote, and the share of its time for which it had the core."""
+    with open(args.lock or os.devnull, "a") as lock:
+        if args.lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+        done = subprocess.run(["taskset", "-c", str(args.core)] + command, capture_output=True, text=True)
+        after, elapsed = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
     if done.returncode != 0:
-        sys.exit(f"{' '.join(whole)}: ended with {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
-    return done.stdout
+        sys.exit(f"{' '.join(command)}: ended with {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return done.stdout, min(1.0, spent / elapsed)
 
 
 def run_native(bed, precision, args):
-    text = run([args.bench, "--bed", str(bed), "--repeats", "1", "--steps", str(args.steps), "--precision", precision], args)
+    text, _ = run([args.bench, "--bed", str(bed), "--repeats", "1", "--steps", str(args.steps), "--precision", precision], args)
     columns = [part.split() for part in text.splitlines()[-2].split("|")]
-    rate, steps_a_list = float(columns[1][0]), float(columns[4][0])
+    rate, processor, steps_a_list = float(columns[1][0]), float(columns[2][0]), float(columns[4][0])
     state = re.search(f"mean height {NUMBER} m, top {NUMBER} m, kinetic energy {NUMBER} J", text)
     height, top, energy = map(float, state.groups())
-    return {"rate": rate, "height": height, "top": top, "energy": energy, "rebuilds": round((args.steps + 20) / steps_a_list), "text": text.splitlines()[-1].strip()}
+    return {"rate": rate, "processor": processor, "height": height, "top": top, "energy": energy, "rebuilds": round((args.steps + 20) / steps_a_list), "text": text.splitlines()[-1].strip()}
 
 
 def run_other(command, script, count, args):
-    text = run(command + ["-in", str(script), "-log", "none"], args)
+    text, share = run(command + ["-in", str(script), "-log", "none"], args)
     loops = re.findall(rf"Loop time of {NUMBER} on 1 procs for (\d+) steps", text)
     rows = re.findall(rf"^\s*{args.steps + 20}\s+{NUMBER}\s+{NUMBER}\s+{NUMBER}\s*$", text, re.M)
     if len(loops) != 2 or not rows:
@@ -138,7 +147,8 @@ def run_other(command, script, count, args):
     energy, top, height = map(float, rows[-1])
     rebuilds = re.findall(r"Neighbor list builds = (\d+)", text)
     rate = 1e-6 * count * int(loops[1][1]) / float(loops[1][0])
-    return {"rate": rate, "height": height, "top": top, "energy": energy, "rebuilds": rebuilds[-1] if rebuilds else ""}
+    state = {"height": height, "top": top, "energy": energy}
+    return {"rate": rate, "processor": rate / share, "rebuilds": rebuilds[-1] if rebuilds else "", **state}
 
 
 def check_same_bed(results, fluidised):
@@ -165,7 +175,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--steps", type=int, default=480, help="timed, after 20 that are not; a multiple of 20")
     parser.add_argument("--core", type=int, default=0)
-    parser.add_argument("--prefix", default="", help="command before each run, such as a lock")
+    parser.add_argument("--lock", help="file to lock during each run, where others share the machine")
     parser.add_argument("--keep", help="directory for bed and scripts; default: one that is removed")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
@@ -190,16 +200,18 @@ def main():
         for turn in range(args.rounds):
             for name, engine in engines.items():
                 results[name].append(engine())
-                print(f"round {turn + 1}: {name:9} {results[name][-1]['rate']:.2f} M particle-steps/s", flush=True)
+                print(f"round {turn + 1}: {name:9} {results[name][-1]['processor']:.2f} M particle-steps/s", flush=True)
             if turn == 0:
                 check_same_bed(results, args.fluidised)
     print(f"\n{len(rows)} particles, {'in motion' if args.fluidised else 'at rest'}, {args.steps} steps, {results['native'][0]['text']}")
-    print("| engine | M particle-steps/s, median (all) | native is faster by | new lists |\n| --- | --- | --- | --- |")
-    middle = {name: statistics.median(r["rate"] for r in of) for name, of in results.items()}
+    print("| engine | M particle-steps a second of processor time, median (all) | of wall time | native is faster by | new lists |")
+    print("| --- | --- | --- | --- | --- |")
     for name, of in results.items():
-        every = " ".join(f"{r['rate']:.2f}" for r in of)
-        paired = statistics.median(a["rate"] / b["rate"] for a, b in zip(results["native"], of))
-        print(f"| {name} | {middle[name]:.2f} ({every}) | {paired:.2f} | {of[0]['rebuilds']} |")
+        every = " ".join(f"{r['processor']:.2f}" for r in of)
+        middle = statistics.median(r["processor"] for r in of)
+        wall = statistics.median(r["rate"] for r in of)
+        paired = statistics.median(a["processor"] / b["processor"] for a, b in zip(results["native"], of))
+        print(f"| {name} | {middle:.2f} ({every}) | {wall:.2f} | {paired:.2f} | {of[0]['rebuilds']} |")
 
 
 if __name__ == "__main__":

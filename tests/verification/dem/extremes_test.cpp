@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_server/insertion/insertion.hpp"
 #include "proto/base/errors.hpp"
 #include "tests/unit/dem_server/native/random_cloud.hpp"
 
@@ -133,13 +134,13 @@ TEST(Cloud, of_sizes_ten_to_one_keeps_its_momentum_and_loses_energy) {
   };
   const auto [momentum, energy, scale] = sums(state);
   const auto engine = make_engine(scene, state);
-  run(*engine, 4e-3, 2e-6);
+  run(*engine, 1e-3, 2e-6);
   const auto [momentum_after, energy_after, scale_after] = sums(engine->particles());
-  fmt::print("{} spheres of 10:1, 2000 steps: momentum off by {:.1e}, energy {:.2f} of the start\n",
+  fmt::print("{} spheres of 10:1, 500 steps: momentum off by {:.1e}, energy {:.2f} of the start\n",
              state.size(), (momentum_after - momentum).norm() / scale, energy_after / energy);
   EXPECT_LT((momentum_after - momentum).norm(), 1e-13 * scale);
   EXPECT_LT(energy_after, 0.95 * energy);
-  EXPECT_GT(energy_after, 0.05 * energy);
+  EXPECT_GT(energy_after, 0.2 * energy);
   // None has slipped through another: no overlap of more than a tenth of a small sphere, where a
   // relative speed of 3 m/s gives 3 m/s · sqrt(m_eff / k) = 0.02 mm.
   double deepest = 0;
@@ -191,6 +192,25 @@ TEST(Overlap, of_a_start_runs_apart_and_nothing_is_lost) {
   const double expected = overlap * std::sqrt(1000 / (2 * mass));  // of each
   EXPECT_NEAR(engine->particles().velocity[1].x(), expected, 1e-3 * expected);
   EXPECT_NEAR(engine->particles().velocity[0].x(), -expected, 1e-3 * expected);
+}
+
+TEST(Overlap, of_a_scene_is_refused_with_both_particles) {
+  Scene scene = pair_scene(1000, 0.9, 1e-6);
+  for (const double x : {0.01, 0.01 + 1.7 * r}) {
+    InsertionSettings one;
+    one.type = InsertionType::lattice;
+    one.material = "glass";
+    one.diameter = 2 * r;
+    one.within.x = {x - 1.01 * r, x + 1.01 * r};
+    one.within.y = one.within.z = {0.009 - 0.01 * r, 0.011 + 0.01 * r};
+    scene.particles.insertion.push_back(one);
+  }
+  const std::string text =
+      message_of<ConfigError>([&] { insert_particles(scene, make_box(scene.fluid.mesh)); });
+  fmt::print("{}\n", text);
+  expect_contains(text, "particle 2");
+  expect_contains(text, "overlaps particle 1");
+  expect_contains(text, "0.15 of the smaller diameter");
 }
 
 TEST(Count, of_none_and_one_is_fine) {

@@ -37,9 +37,9 @@ constexpr auto all_columns = std::to_array<AuditColumn>({
     {"fluid_mass", "kg", "fluid in the domain at the window's end", true,
      RealColumn{[](Row row) { return row.mass.fluid_mass; }}},
     {"particle_count", "1", "particles in the domain", true,
-     WholeColumn{[](Row row) { return row.particle_count; }}},
+     WholeColumn{[](Row row) { return row.particles.window.count; }}},
     {"particle_mass", "kg", "mass of these", true,
-     RealColumn{[](Row row) { return row.particle_mass; }}},
+     RealColumn{[](Row row) { return row.particles.window.mass; }}},
     {"voidage_volume_error", "1",
      "solids volume in the cells minus that of the particles, over the latter or, if that is more, "
      "over 1e-5 "
@@ -77,6 +77,35 @@ constexpr auto all_columns = std::to_array<AuditColumn>({
      RealColumn{[](Row row) { return row.wall_dem; }}},
     {"wall_exchange", "s", "time the exchange and the audit took", false,
      RealColumn{[](Row row) { return row.wall_exchange; }}},
+});
+
+constexpr auto all_flow_columns = std::to_array<AuditColumn>({
+    {"particles_in", "1", "particles that came in at the window's end", true,
+     WholeColumn{[](Row row) { return row.particles.window.entered; }}},
+    {"particles_out", "1", "particles that left at the window's end", true,
+     WholeColumn{[](Row row) { return row.particles.window.left; }}},
+    {"particles_waiting", "1", "particles due so far that found no room to come in", true,
+     WholeColumn{[](Row row) { return row.particles.window.waiting; }}},
+    {"particle_mass_in", "kg", "mass of those that came in", true,
+     RealColumn{[](Row row) { return row.particles.window.mass_entered; }}},
+    {"particle_mass_out", "kg", "mass of those that left", true,
+     RealColumn{[](Row row) { return row.particles.window.mass_left; }}},
+    {"particle_mass_error", "1",
+     "particle mass at the start plus all that came in less all that left less particle_mass, over "
+     "the first two",
+     true, RealColumn{[](Row row) { return row.particles.mass_error; }}},
+    {"particle_momentum_in_x", "N s", "momentum that those brought in", true,
+     RealColumn{[](Row row) { return row.particles.window.momentum_entered.x(); }}},
+    {"particle_momentum_in_y", "N s", "the same along y", true,
+     RealColumn{[](Row row) { return row.particles.window.momentum_entered.y(); }}},
+    {"particle_momentum_in_z", "N s", "the same along z", true,
+     RealColumn{[](Row row) { return row.particles.window.momentum_entered.z(); }}},
+    {"particle_momentum_out_x", "N s", "momentum that those took out", true,
+     RealColumn{[](Row row) { return row.particles.window.momentum_left.x(); }}},
+    {"particle_momentum_out_y", "N s", "the same along y", true,
+     RealColumn{[](Row row) { return row.particles.window.momentum_left.y(); }}},
+    {"particle_momentum_out_z", "N s", "the same along z", true,
+     RealColumn{[](Row row) { return row.particles.window.momentum_left.z(); }}},
 });
 
 constexpr auto all_scalar_columns = std::to_array<ScalarColumn>({
@@ -117,11 +146,16 @@ const char* column_unit(const ScalarName& scalar, const ScalarColumn& column) {
 
 std::span<const AuditColumn> audit_columns() { return all_columns; }
 
-std::string audit_csv_header(std::span<const ScalarName> scalars) {
+std::span<const AuditColumn> flow_columns() { return all_flow_columns; }
+
+std::string audit_csv_header(std::span<const ScalarName> scalars, bool flow) {
   std::string line;
   for (const AuditColumn& column : all_columns) {
     if (!line.empty()) line += ',';
     line += column.name;
+  }
+  if (flow) {
+    for (const AuditColumn& column : all_flow_columns) line += std::string(",") + column.name;
   }
   for (const ScalarName& scalar : scalars) {
     for (const ScalarColumn& column : all_scalar_columns) line += ',' + column_name(scalar, column);
@@ -136,6 +170,13 @@ std::string audit_reference() {
       "participants sent. Made by `coordinator reference audit`.\n\n"
       "| column | unit | meaning |\n| --- | --- | --- |\n";
   for (const AuditColumn& column : all_columns) {
+    table += fmt::format("| `{}` | {} | {} |\n", column.name, column.unit, column.meaning);
+  }
+  table +=
+      "\nIf particles can come in (`particles.inflow`) or leave (`particles.outflow`), at the "
+      "end:\n\n"
+      "| column | unit | meaning |\n| --- | --- | --- |\n";
+  for (const AuditColumn& column : all_flow_columns) {
     table += fmt::format("| `{}` | {} | {} |\n", column.name, column.unit, column.meaning);
   }
   table +=

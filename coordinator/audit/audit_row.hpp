@@ -10,6 +10,7 @@
 
 #include "coordinator/audit/mass_ledger.hpp"
 #include "coordinator/audit/momentum_ledger.hpp"
+#include "coordinator/audit/particle_ledger.hpp"
 #include "coordinator/audit/scalar_ledger.hpp"
 #include "proto/scene/scene.hpp"
 
@@ -20,8 +21,7 @@ struct AuditRow {
   double time = 0;        ///< at its end [s]
   MassAudit mass;
   MomentumAudit momentum;
-  std::int64_t particle_count = 0;
-  double particle_mass = 0;            ///< [kg]
+  ParticleAudit particles;
   std::int64_t solver_iterations = 0;  ///< of the pressure solver
   std::int64_t attempts = 1;           ///< that the window took
   double wall_cfd = 0;                 ///< [s] of this machine's time
@@ -45,6 +45,9 @@ struct AuditColumn {
 
 /// The columns of every run, in the order of audit.csv.
 std::span<const AuditColumn> audit_columns();
+
+/// The columns that follow these if particles can come in or leave (particles_flow).
+std::span<const AuditColumn> flow_columns();
 
 /// A scalar of the scene, as its columns are named.
 struct ScalarName {
@@ -70,8 +73,9 @@ std::span<const ScalarColumn> scalar_columns();
 std::string column_name(const ScalarName& scalar, const ScalarColumn& column);
 const char* column_unit(const ScalarName& scalar, const ScalarColumn& column);
 
-/// "step,time,..." and a line end; the columns of the scalars come last.
-std::string audit_csv_header(std::span<const ScalarName> scalars = {});
+/// "step,time,..." and a line end; then the columns of the particle flow, if asked for; those of
+/// the scalars come last.
+std::string audit_csv_header(std::span<const ScalarName> scalars = {}, bool flow = false);
 
 /// docs/audit-reference.md: the columns as a Markdown table of name, unit, meaning.
 std::string audit_reference();

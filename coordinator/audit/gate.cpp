@@ -27,6 +27,12 @@ constexpr auto cures = std::to_array<Cure>({
      "the impulse that the fluid side says it took is not that of the drag it was sent"},
     {"handover_error",
      "the particle side was not given the impulse that the fluid side handed over"},
+    {"particle_mass_error",
+     "the mass of the particles is not that at the start plus what the particle side says came in "
+     "less what it says left"},
+    {"particle_count_error",
+     "the number of particles is not that at the start plus those that the particle side says came "
+     "in less those that left"},
     {"scalar_imbalance",
      "what the fluid side says of the boundary flows and sources of a scalar does not make the "
      "change of its amount"},
@@ -53,7 +59,7 @@ std::optional<int> place(int cell) { return cell < 0 ? std::nullopt : std::optio
 }  // namespace
 
 Verdict judge(const AuditRow& row, double limit) {
-  const std::array<Verdict, 6> quantities{{
+  const std::array<Verdict, 8> quantities{{
       {true, "voidage_volume_error", row.mass.voidage_volume_error, limit, {}},
       {true, "max_cell_residual", row.mass.max_cell_residual, limit,
        place(row.mass.max_cell_residual_cell)},
@@ -61,6 +67,8 @@ Verdict judge(const AuditRow& row, double limit) {
       {true, "impulse_error", row.momentum.impulse_error, limit,
        place(row.momentum.impulse_error_cell)},
       {true, "handover_error", row.momentum.handover_error, limit, {}},
+      {true, "particle_mass_error", row.particles.mass_error, limit, {}},
+      {true, "particle_count_error", row.particles.count_error, limit, {}},
       {true, "scalar_imbalance", worst_imbalance(row), limit, {}},
   }};
   Verdict worst = quantities.front();

@@ -18,8 +18,8 @@ struct Verdict {
 };
 
 /// Holds |relative_imbalance|, max_cell_residual, voidage_volume_error, both relative momentum
-/// errors and the imbalance of each scalar against `limit` (scene: coupling.audit.limit). A value
-/// that is not a number never passes.
+/// errors, the imbalance of each scalar, and the errors of the particles' mass and number against
+/// `limit` (scene: coupling.audit.limit). A value that is not a number never passes.
 Verdict judge(const AuditRow& row, double limit);
 
 /// One sentence for the user: what was seen where, and what to do. For a verdict that did not pass.

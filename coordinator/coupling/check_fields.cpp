@@ -28,7 +28,8 @@ void require_finite(const Fields& fields, std::string_view sender, std::int64_t 
 
 }  // namespace
 
-void check_particle_fields(const Message& result, const Mesh& mesh, std::int64_t step) {
+void check_particle_fields(const Message& result, const Scene& scene, const Mesh& mesh,
+                           std::int64_t step) {
   const Fields fields = fields_of(result);
   const auto voidage = fields.scalars(field::voidage, mesh.cells());
   fields.scalars(field::drag_coefficient, mesh.cells());
@@ -38,6 +39,14 @@ void check_particle_fields(const Message& result, const Mesh& mesh, std::int64_t
   for (const auto* name :
        {field::particle_volume, field::particle_count, field::particle_mass, field::wall_seconds})
     fields.number(name);
+  if (particles_flow(scene)) {
+    fields.vectors(field::particle_momentum_entered, 1);
+    fields.vectors(field::particle_momentum_left, 1);
+    for (const auto* name :
+         {field::particles_entered, field::particles_left, field::particles_waiting,
+          field::particle_mass_entered, field::particle_mass_left})
+      fields.number(name);
+  }
   require_finite(fields, "dem_server", step);
   for (int cell = 0; cell < mesh.cells(); ++cell) {
     if (!(voidage[cell] > 0 && voidage[cell] <= 1)) {

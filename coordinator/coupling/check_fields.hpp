@@ -9,7 +9,8 @@ namespace fluxpact {
 
 /// Throws ProtocolError if a field is missing or mis-shaped, NumericsError naming field, cell and
 /// value if one is not finite, or a voidage outside (0, 1].
-void check_particle_fields(const Message& result, const Mesh& mesh, std::int64_t step);
+void check_particle_fields(const Message& result, const Scene& scene, const Mesh& mesh,
+                           std::int64_t step);
 void check_fluid_fields(const Message& result, const Scene& scene, const Mesh& mesh,
                         std::int64_t step);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "coordinator/coupling/check_fields.hpp"
 #include "proto/participant/field_names.hpp"
@@ -22,7 +23,7 @@ Message advance_particles(const Coupling& coupling, const Window& window, Commit
   for (const auto* name : {field::velocity, field::pressure_gradient})
     share_array(request, state.fluid, name);
   Message result = coupling.session.ask(Role::particles, request);
-  check_particle_fields(result, coupling.mesh, window.step);
+  check_particle_fields(result, coupling.scene, coupling.mesh, window.step);
   return result;
 }
 
@@ -64,6 +65,26 @@ std::vector<ScalarAudit> audit_scalars(const Coupling& coupling, const Window& w
   return audits;
 }
 
+std::int64_t whole(const Fields& fields, std::string_view name) {
+  return std::llround(fields.number(name));
+}
+
+/// What the particle side says of its particles, and of those that came in and left if they `flow`.
+ParticleWindow particle_window(const Fields& particles, bool flow) {
+  ParticleWindow window;
+  window.count = whole(particles, field::particle_count);
+  window.mass = particles.number(field::particle_mass);
+  if (!flow) return window;
+  window.entered = whole(particles, field::particles_entered);
+  window.left = whole(particles, field::particles_left);
+  window.waiting = whole(particles, field::particles_waiting);
+  window.mass_entered = particles.number(field::particle_mass_entered);
+  window.mass_left = particles.number(field::particle_mass_left);
+  window.momentum_entered = particles.vectors(field::particle_momentum_entered, 1).front();
+  window.momentum_left = particles.vectors(field::particle_momentum_left, 1).front();
+  return window;
+}
+
 /// The ledgers of this window, from what was sent.
 AuditRow audit(const Coupling& coupling, const Window& window, const CommittedState& state,
                const Fields& particles, const Fields& fluid) {
@@ -97,8 +118,10 @@ AuditRow audit(const Coupling& coupling, const Window& window, const CommittedSt
        .impulse_given = particles.vectors(field::impulse_given, cells)},
       state.momentum);
   row.scalars = audit_scalars(coupling, window, state, particles, fluid);
-  row.particle_count = static_cast<std::int64_t>(particles.number(field::particle_count));
-  row.particle_mass = particles.number(field::particle_mass);
+  row.particles.window = particle_window(particles, particles_flow(coupling.scene));
+  if (has_particles(coupling.scene)) {
+    row.particles = audit_particles(row.particles.window, state.solids);
+  }
   row.solver_iterations = static_cast<std::int64_t>(fluid.number(field::solver_iterations));
   row.wall_dem = particles.number(field::wall_seconds);
   row.wall_cfd = fluid.number(field::wall_seconds);
@@ -120,13 +143,15 @@ CommittedState start_coupling(const Coupling& coupling) {
   Message request;
   request.header.type = MessageType::start;
   state.particles = coupling.session.ask(Role::particles, request);
-  check_particle_fields(state.particles, coupling.mesh, 0);
+  check_particle_fields(state.particles, coupling.scene, coupling.mesh, 0);
   share_array(request, state.particles, field::voidage);
   state.fluid = coupling.session.ask(Role::fluid, request);
   check_fluid_fields(state.fluid, coupling.scene, coupling.mesh, 0);
   const Fields particles = fields_of(state.particles);
   state.mass = start_mass(coupling.mesh, coupling.scene.fluid.density,
                           particles.scalars(field::voidage, coupling.mesh.cells()));
+  state.solids = start_particles(whole(particles, field::particle_count),
+                                 particles.number(field::particle_mass));
   return state;
 }
 
@@ -145,7 +170,7 @@ StepResult run_step(const Coupling& coupling, const Window& window, CommittedSta
   tell_both(coupling, result.committed ? MessageType::commit : MessageType::rollback);
   if (result.committed) {
     state = {std::move(particles), std::move(fluid), result.row.mass.total,
-             result.row.momentum.total};
+             result.row.momentum.total, result.row.particles.total};
   }
 
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;

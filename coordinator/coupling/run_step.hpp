@@ -12,6 +12,7 @@ struct CommittedState {
   Message fluid;
   MassTotal mass;
   MomentumTotal momentum;
+  ParticleTotal solids;
 };
 
 /// What does not change from window to window.

@@ -6,8 +6,8 @@
 
 namespace fluxpact {
 
-AuditTable::AuditTable(Hdf5File& file, std::span<const ScalarName> scalars) {
-  for (const AuditColumn& column : audit_columns()) {
+void AuditTable::make_columns(Hdf5File& file, std::span<const AuditColumn> columns) {
+  for (const AuditColumn& column : columns) {
     if (!column.reproducible) continue;
     const std::string name = std::string("/audit/") + column.name;
     if (std::holds_alternative<RealColumn>(column.value)) {
@@ -19,6 +19,11 @@ AuditTable::AuditTable(Hdf5File& file, std::span<const ScalarName> scalars) {
                           std::vector<std::int64_t>(capacity)});
     }
   }
+}
+
+AuditTable::AuditTable(Hdf5File& file, std::span<const ScalarName> scalars, bool flow) {
+  make_columns(file, audit_columns());
+  if (flow) make_columns(file, flow_columns());
   for (std::size_t index = 0; index < scalars.size(); ++index) {
     for (const ScalarColumn& column : scalar_columns()) {
       const std::string name = "/audit/" + column_name(scalars[index], column);

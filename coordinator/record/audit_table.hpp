@@ -18,8 +18,9 @@ class AuditTable {
   /// Rows that are kept back at most; also the piece in which HDF5 stores a column.
   static constexpr std::size_t capacity = 256;
 
-  /// Makes the datasets of all reproducible columns, those of the scalars included.
-  explicit AuditTable(Hdf5File& file, std::span<const ScalarName> scalars = {});
+  /// Makes the datasets of all reproducible columns, those of the scalars and, if asked for, of the
+  /// particle flow included.
+  explicit AuditTable(Hdf5File& file, std::span<const ScalarName> scalars = {}, bool flow = false);
 
   /// Keeps a row. Allocates nothing. The table must not be full.
   void append(const AuditRow& row);
@@ -28,6 +29,8 @@ class AuditTable {
   void write_out();
 
  private:
+  void make_columns(Hdf5File& file, std::span<const AuditColumn> columns);
+
   /// A column of the scalar `index`.
   struct OfScalar {
     std::size_t index = 0;

@@ -81,15 +81,16 @@ void check_ids(std::span<const double> ids) {
 Recorder::Recorder(std::filesystem::path directory, const Mesh& mesh, const RunDescription& run)
     : directory_(prepare(std::move(directory), run.scene_text)),
       scalars_(run.scalars),
+      particle_flow_(run.particle_flow),
       cells_(static_cast<std::size_t>(mesh.cells())),
       faces_(static_cast<std::size_t>(mesh.faces())),
       // First: HDF5 locks the file, so a second run into the same directory stops here.
       file_(create_results(directory_ / results_file_name, run.program_version, run.continuity)),
-      audit_(std::in_place, file_, scalars_),
+      audit_(std::in_place, file_, scalars_, particle_flow_),
       csv_(TextFile::create(directory_ / csv_name)),
       index_(make_index(file_, mesh)) {
   write_mesh(file_, mesh);
-  csv_.append(audit_csv_header(scalars_));
+  csv_.append(audit_csv_header(scalars_, particle_flow_));
   file_.flush();
 }
 
@@ -103,12 +104,16 @@ Recorder::~Recorder() {
 
 void Recorder::append(const AuditRow& row) {
   line_.clear();
-  for (const AuditColumn& column : audit_columns()) {
+  const auto add = [&](const AuditColumn& column) {
     if (line_.size() > 0) line_.push_back(',');
     // The shortest text that reads back to the same bits.
     std::visit(
         [&](const auto value) { fmt::format_to(std::back_inserter(line_), "{}", value(row)); },
         column.value);
+  };
+  for (const AuditColumn& column : audit_columns()) add(column);
+  if (particle_flow_) {
+    for (const AuditColumn& column : flow_columns()) add(column);
   }
   for (const ScalarAudit& scalar : row.scalars) {
     for (const ScalarColumn& column : scalar_columns())

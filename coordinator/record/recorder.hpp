@@ -32,6 +32,7 @@ struct RunDescription {
   std::string program_version;
   Continuity continuity = Continuity::conservative;
   std::vector<ScalarName> scalars = {};
+  bool particle_flow = false;  ///< particles can come in or leave
 };
 
 /// A committed time.
@@ -91,6 +92,7 @@ class Recorder {
 
   std::filesystem::path directory_;
   std::vector<ScalarName> scalars_;
+  bool particle_flow_ = false;
   std::size_t cells_ = 0;
   std::size_t faces_ = 0;
   Hdf5File file_;

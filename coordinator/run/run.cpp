@@ -54,9 +54,9 @@ class Run {
  public:
   Run(const Scene& scene, const Mesh& mesh, const RunOptions& options)
       : scene_(scene),
-        recorder_(
-            scene.output.directory, mesh,
-            {write_scene(scene), version_line(), scene.coupling.continuity, scalar_names(scene)}),
+        recorder_(scene.output.directory, mesh,
+                  {write_scene(scene), version_line(), scene.coupling.continuity,
+                   scalar_names(scene), particles_flow(scene)}),
         log_(open_log(recorder_.directory() / "run.log", options.log_level)),
         session_(scene, mesh, log_, options.log_level),
         coupling_{scene, mesh, session_},

@@ -66,6 +66,7 @@ void Summary::add(const AuditRow& row, const CommittedState& state, double recor
   largest_residual_ = std::max(largest_residual_, row.mass.max_cell_residual);
   largest_handover_ =
       std::max({largest_handover_, row.momentum.handover_error, row.momentum.impulse_error});
+  largest_particle_error_ = std::max(largest_particle_error_, row.particles.mass_error);
   largest_correction_ =
       std::max(largest_correction_, fields_of(state.fluid).number(field::closure_correction));
   if (row.step > second_half_) {
@@ -115,12 +116,20 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
   if (violations_ > 0)
     line("  AUDIT VIOLATIONS      in {} of {} windows (limit {:g}; on_violation: warn)",
          violations_, windows_, scene.coupling.audit.limit);
-  line("  particles             {} ({:.6g} kg)", last_.particle_count, last_.particle_mass);
+  const ParticleWindow& particles = last_.particles.window;
+  line("  particles             {} ({:.6g} kg)", particles.count, particles.mass);
+  if (particles_flow(scene)) {
+    const ParticleTotal& flow = last_.particles.total;
+    line("  particles in and out  {} in ({:.6g} kg), {} out ({:.6g} kg), {} waiting",
+         flow.count_entered, flow.entered.value(), flow.count_left, flow.left.value(),
+         particles.waiting);
+    line("  particle mass         {:.2e} relative, in any window", largest_particle_error_);
+  }
   if (pressure_windows_ > 0) {
     const double drop = pressure_drop_.value() / static_cast<double>(pressure_windows_);
     const std::string weight =
-        last_.particle_count > 0 ? fmt::format("; bed weight per area {:.4g} Pa", weight_per_area_)
-                                 : std::string{};
+        particles.count > 0 ? fmt::format("; bed weight per area {:.4g} Pa", weight_per_area_)
+                            : std::string{};
     line("  pressure drop         {:.4g} Pa (mean of the second half){}", drop, weight);
   }
   line("  fluid                 {:.3g} iterations of the pressure and {:.3g} ms a window",

@@ -58,6 +58,11 @@ class CellGrid {
   template <class Visit>
   void visit_partners(int place, const Visit& visit) const;
 
+  /// Calls visit(other, shift) with every place whose cell touches the cube of `reach` [m] around
+  /// `at` (wrapped); across periodic sides with each image, `reach` being at most a period.
+  template <class Visit>
+  void visit_within(const Vector3& at, double reach, const Visit& visit) const;
+
  private:
   using Cell = std::array<int, 3>;
   void lay_out(const Domain& domain, double cutoff, PositionRows positions);
@@ -151,6 +156,29 @@ void CellGrid::visit_partners(int place, const Visit& visit) const {
   visit_cells(from, to, [&](int first, int last, int shift) {
     for (int other = std::max(first, place + 1); other < last; ++other) visit(other, shift);
   });
+}
+
+template <class Visit>
+void CellGrid::visit_within(const Vector3& at, double reach, const Visit& visit) const {
+  std::array<int, 3> low{};
+  std::array<int, 3> high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place = (at[axis] - lower_[axis]) * cells_per_metre_[axis];
+    const double span = reach * cells_per_metre_[axis];
+    low[axis] = static_cast<int>(std::floor(place - span));
+    high[axis] = static_cast<int>(std::floor(place + span));
+    if (periodic_[axis]) continue;
+    low[axis] = std::clamp(low[axis], 0, cells_[axis] - 1);
+    high[axis] = std::clamp(high[axis], 0, cells_[axis] - 1);
+  }
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const Range range = neighbour_cell({0, 0, 0}, {i, j, k});
+        for (int other = range.first; other < range.last; ++other) visit(other, range.shift);
+      }
+    }
+  }
 }
 
 }  // namespace fluxpact

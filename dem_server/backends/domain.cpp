@@ -1,5 +1,6 @@
 #include "dem_server/backends/domain.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "proto/base/errors.hpp"
@@ -30,6 +31,12 @@ bool is_pressure(const Scene& scene, const std::string& patch) {
          boundary->second.type == BoundaryType::pressure;
 }
 
+/// Whether particles may leave through a patch where nothing holds them.
+bool is_outflow(const Scene& scene, const std::string& patch) {
+  const auto& outflow = scene.particles.outflow;
+  return !outflow || std::find(outflow->begin(), outflow->end(), patch) != outflow->end();
+}
+
 }  // namespace
 
 const char* side_name(int side) {
@@ -45,10 +52,11 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
   }
   std::array<bool, 6> only_pressure{};
   only_pressure.fill(true);
+  std::array<bool, 6> only_outflow = only_pressure;
   for (const Patch& patch : mesh.patches) {
     for (int face = patch.first; face < patch.first + patch.size; ++face) {
       const int side = side_of(domain, mesh, face);
-      if (side < 0 && scene.particles.insertion.empty()) continue;  // nobody meets the walls
+      if (side < 0 && !has_particles(scene)) continue;  // nobody meets the walls
       if (side < 0) {
         const Vector3& at = mesh.face_centres[face];
         throw ConfigError(
@@ -58,17 +66,20 @@ Domain particle_domain(const Scene& scene, const Mesh& mesh) {
             patch.name, at.x(), at.y(), at.z());
       }
       only_pressure[side] = only_pressure[side] && is_pressure(scene, patch.name);
+      only_outflow[side] = only_outflow[side] && is_outflow(scene, patch.name);
     }
   }
   for (int side = 0; side < 6; ++side) {
     const bool open = only_pressure[side] || scene.particles.walls == WallSource::none;
     domain.sides[side] = open ? SideKind::open : SideKind::wall;
+    domain.lets_out[side] = open && only_outflow[side];
   }
   for (const Vector3& translation : mesh.translations) {
     int axis = 0;
     translation.cwiseAbs().maxCoeff(&axis);
     const int low = Domain::low_side(axis);
     domain.sides[low] = domain.sides[low + 1] = SideKind::periodic;
+    domain.lets_out[low] = domain.lets_out[low + 1] = false;
   }
   return domain;
 }
@@ -84,7 +95,17 @@ Vector3 wrapped(const Domain& domain, Vector3 position) {
   return position;
 }
 
+int left_through(const Domain& domain, const Vector3& position) {
+  for (int side = 0; side < 6; ++side) {
+    if (!domain.lets_out[side]) continue;
+    const double outward = side % 2 == 0 ? -1.0 : 1.0;
+    if (outward * (position[side / 2] - domain.plane(side)) > 0) return side;
+  }
+  return -1;
+}
+
 int lost_through(const Domain& domain, const Vector3& position, double radius) {
+  if (left_through(domain, position) >= 0) return -1;
   for (int side = 0; side < 6; ++side) {
     if (domain.sides[side] == SideKind::periodic) continue;
     const double outward = side % 2 == 0 ? -1.0 : 1.0;

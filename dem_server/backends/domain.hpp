@@ -11,15 +11,16 @@
 
 namespace fluxpact {
 
-/// wall: a plane that particles touch. open: nothing is there, and a particle whose centre passes
-/// it is lost (NumericsError). periodic: a particle that leaves here comes back on the opposite
-/// side.
+/// wall: a plane that particles touch. open: nothing is there; a particle whose centre is beyond it
+/// at the end of a window leaves the domain, or is lost (NumericsError) if this side lets none out.
+/// periodic: a particle that leaves here comes back on the opposite side.
 enum class SideKind : std::uint8_t { wall, open, periodic };
 
 struct Domain {
   Vector3 lower;                    ///< [m]
   Vector3 upper;                    ///< [m]
   std::array<SideKind, 6> sides{};  ///< in the order of Side: x_min, x_max, y_min, ...
+  std::array<bool, 6> lets_out{};   ///< particles leave through this side, which is open
 
   static int low_side(int axis) { return 2 * axis; }
   bool periodic(int axis) const { return sides[low_side(axis)] == SideKind::periodic; }
@@ -33,16 +34,22 @@ const char* side_name(int side);
 
 /// The domain of the particles of a scene. Every side that is not periodic is a wall, so that no
 /// particle leaves through an inlet, except a side all of whose faces have a `pressure` boundary:
-/// that one is open. With `particles.walls: none` all of them are open. Throws ConfigError if a
-/// boundary face of the mesh lies off its outer box (only boxes are known here) and the scene has
-/// particles.
+/// that one is open. With `particles.walls: none` all of them are open. An open side lets particles
+/// out if all of its faces are of patches in `particles.outflow`, or if that is not given. Throws
+/// ConfigError if a boundary face of the mesh lies off its outer box (only boxes are known here)
+/// and the scene has particles.
 Domain particle_domain(const Scene& scene, const Mesh& mesh);
 
 /// Position moved by whole periods into [lower, upper) along the periodic axes [m].
 Vector3 wrapped(const Domain& domain, Vector3 position);
 
-/// The side through which a sphere has left the domain, or -1: its centre beyond an open side, or
-/// all of it beyond a wall. Periodic sides hold everything.
+/// The side through which a sphere has left the domain as it may, or -1: its centre is beyond one
+/// that lets particles out.
+int left_through(const Domain& domain, const Vector3& position);
+
+/// The side through which a sphere has got lost, or -1: its centre beyond an open side that lets
+/// none out, or all of it beyond a wall. One that has left is not lost. Periodic sides hold
+/// everything.
 int lost_through(const Domain& domain, const Vector3& position, double radius);
 
 }  // namespace fluxpact

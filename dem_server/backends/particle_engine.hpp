@@ -46,6 +46,12 @@ class ParticleEngine {
   virtual void advance(double window, int sub_steps, std::span<const Vector3> force,
                        const Progress& progress) = 0;
   virtual EngineCounters counters() const { return {}; }
+
+  /// After `advance`, before `commit`: take the rows `leaving` (ascending, of the candidate state)
+  /// out and add the spheres `entering`, whose ids ascend and are larger than any before. Rows that
+  /// stay keep their order. Undone by `rollback` with the rest of the window. Throws ConfigError
+  /// for spheres that are not sound (checked_rows), or too light for the time step.
+  virtual void exchange(std::span<const int> leaving, const ParticleState& entering) = 0;
   virtual void commit() = 0;
   virtual void rollback() = 0;
 };

@@ -64,4 +64,27 @@ ParticleState checked_rows(ParticleState particles, int materials) {
   return particles;
 }
 
+void exchange_rows(std::span<const int> leaving, const ParticleState& entering,
+                   ParticleState& particles) {
+  std::int64_t last = particles.id.empty() ? 0 : particles.id.back();
+  for (const std::int64_t id : entering.id) {
+    if (id <= last) {
+      throw ConfigError("particle {} enters after {}: ids of those that enter must ascend", id,
+                        last);
+    }
+    last = id;
+  }
+  const auto exchange = [&](auto& values, const auto& added) {
+    remove_rows(leaving, values);
+    values.insert(values.end(), added.begin(), added.end());
+  };
+  exchange(particles.id, entering.id);
+  exchange(particles.position, entering.position);
+  exchange(particles.velocity, entering.velocity);
+  exchange(particles.spin, entering.spin);
+  exchange(particles.radius, entering.radius);
+  exchange(particles.density, entering.density);
+  exchange(particles.material, entering.material);
+}
+
 }  // namespace fluxpact

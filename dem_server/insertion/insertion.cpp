@@ -4,48 +4,25 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_server/insertion/entry_box.hpp"
 #include "dem_server/insertion/packing.hpp"
 #include "dem_server/insertion/placement_check.hpp"
+#include "dem_server/insertion/push_apart.hpp"
 #include "dem_server/insertion/read_particles.hpp"
+#include "dem_server/insertion/settling.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
 namespace {
+
+/// Overlap that `particles.overlaps: relax` may leave, of the smaller diameter.
+constexpr double relaxed_overlap = 0.01;
 
 /// One entry of particles.insertion, its number from 1 for messages.
 struct Entry {
   const InsertionSettings& settings;
   int number;
 };
-
-/// The box of an entry: its `within` where given, else the domain.
-PackingBox box_of(const Entry& entry, const Domain& domain) {
-  PackingBox box{domain.lower, domain.upper, {}};
-  const Region& within = entry.settings.within;
-  const std::array<const std::optional<std::array<double, 2>>*, 3> ranges{&within.x, &within.y,
-                                                                          &within.z};
-  for (int axis = 0; axis < 3; ++axis) {
-    box.periodic[axis] = domain.periodic(axis);
-    if (!ranges[axis]->has_value()) continue;
-    const auto [low, high] = **ranges[axis];
-    // A bound written with fewer digits than the mesh's point is still the side.
-    const double rounding = 1e-9 * domain.length(axis);
-    if (!(low < high) || low < domain.lower[axis] - rounding ||
-        high > domain.upper[axis] + rounding) {
-      throw ConfigError(
-          "particles.insertion entry {}: within.{} is [{:.6g}, {:.6g}] m; it must ascend and lie "
-          "in the "
-          "domain, [{:.6g}, {:.6g}] m",
-          entry.number, "xyz"[axis], low, high, domain.lower[axis], domain.upper[axis]);
-    }
-    const bool whole =
-        low <= domain.lower[axis] + rounding && high >= domain.upper[axis] - rounding;
-    box.periodic[axis] = box.periodic[axis] && whole;
-    box.lower[axis] = std::max(low, domain.lower[axis]);
-    box.upper[axis] = std::min(high, domain.upper[axis]);
-  }
-  return box;
-}
 
 double diameter_of(const Entry& entry) {
   const double diameter = entry.settings.diameter;
@@ -54,27 +31,40 @@ double diameter_of(const Entry& entry) {
                     entry.number, diameter);
 }
 
-std::vector<Vector3> pack(const Entry& entry, const PackingBox& box) {
-  const InsertionSettings& settings = entry.settings;
-  const double diameter = diameter_of(entry);
-  if (settings.count < 0) {
-    throw ConfigError("particles.insertion entry {}: count is {}; it must not be negative",
-                      entry.number, settings.count);
+std::string name_of(const Entry& entry) {
+  return fmt::format("particles.insertion entry {}", entry.number);
+}
+
+std::vector<ListedParticle> listed(const std::vector<Vector3>& centres,
+                                   std::span<const double> diameters, const Vector3& velocity) {
+  std::vector<ListedParticle> particles;
+  particles.reserve(centres.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    particles.push_back({centres[i], velocity, Vector3::Zero(), diameters[i]});
   }
+  return particles;
+}
+
+std::vector<ListedParticle> pack(const Entry& entry, const PackingBox& box) {
+  const InsertionSettings& settings = entry.settings;
   const auto seed = static_cast<std::uint64_t>(settings.seed);
-  const auto packing = random_packing(box, settings.count, diameter, seed);
-  if (packing) return *packing;
-  const double share = std::numbers::pi / 6 * diameter * diameter * diameter / box.volume();
-  const int fits = largest_packing(box, settings.count, diameter, seed);
+  const std::vector<double> diameters = entry_diameters(name_of(entry), settings, box.volume());
+  const auto packing = random_packing(box, diameters, seed);
+  if (packing) return listed(*packing, diameters, settings.velocity);
+  const int fits = largest_packing(box, diameters, seed);
+  const auto fraction = [&](int count) {
+    double volume = 0;
+    for (int i = 0; i < count; ++i) volume += sphere_volume(diameters[i]);
+    return volume / box.volume();
+  };
+  const int count = static_cast<int>(diameters.size());
   const Vector3 size = box.upper - box.lower;
   throw ConfigError(
-      "particles.insertion entry {}: {} spheres of {:.4g} m fill {:.3f} of the region of {:.4g} x "
-      "{:.4g} "
-      "x {:.4g} m, which a random packing does not reach; {} fit, a fraction of {:.3f}: lower "
-      "`count` or "
-      "enlarge `within`",
-      entry.number, settings.count, diameter, settings.count * share, size.x(), size.y(), size.z(),
-      fits, fits * share);
+      "{}: {} spheres of {:.4g} m fill {:.3f} of the region of {:.4g} x {:.4g} x {:.4g} m, which a "
+      "random packing does not reach; {} fit, a fraction of {:.3f}: ask for fewer, or enlarge "
+      "`within`",
+      name_of(entry), count, *std::max_element(diameters.begin(), diameters.end()), fraction(count),
+      size.x(), size.y(), size.z(), fits, fraction(fits));
 }
 
 /// A cubic lattice from the lower corner: the first sphere touches the sides, or lies half a
@@ -108,23 +98,37 @@ std::vector<Vector3> lattice(const Entry& entry, const PackingBox& box) {
   return centres;
 }
 
-std::vector<ListedParticle> placed(const Entry& entry, const Domain& domain) {
-  if (entry.settings.type == InsertionType::file) {
-    std::vector<ListedParticle> listed = read_particles(entry.settings.path);
-    for (ListedParticle& particle : listed) {
+std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const Domain& domain,
+                                   const Progress& alive) {
+  const InsertionSettings& settings = entry.settings;
+  if (settings.type == InsertionType::file) {
+    std::vector<ListedParticle> particles = read_particles(settings.path, settings.group);
+    for (ListedParticle& particle : particles) {
       if (!particle.diameter) particle.diameter = diameter_of(entry);
     }
-    return listed;
+    return particles;
   }
-  const PackingBox box = box_of(entry, domain);
-  const std::vector<Vector3> centres =
-      entry.settings.type == InsertionType::packing ? pack(entry, box) : lattice(entry, box);
-  std::vector<ListedParticle> particles;
-  particles.reserve(centres.size());
-  for (const Vector3& centre : centres) {
-    particles.push_back({centre, entry.settings.velocity, entry.settings.diameter});
+  const PackingBox box = entry_box(name_of(entry), settings.within, domain);
+  if (settings.type == InsertionType::packing) return pack(entry, box);
+  if (settings.type == InsertionType::settled) {
+    return settled_bed(scene, name_of(entry), settings, box, domain, alive);
   }
-  return particles;
+  const std::vector<Vector3> centres = lattice(entry, box);
+  return listed(centres, std::vector<double>(centres.size(), settings.diameter), settings.velocity);
+}
+
+/// Push apart whatever overlaps.
+void relax(const Domain& domain, const std::vector<int>& entry, ParticleState& state) {
+  std::vector<double> diameters;
+  for (const double radius : state.radius) diameters.push_back(2 * radius);
+  const PushedApart result = push_apart(domain, diameters, relaxed_overlap, state.position);
+  if (result.done) return;
+  throw ConfigError(
+      "particles.overlaps: relax: particle {} of particles.insertion entry {} and particle {} of "
+      "entry {} still overlap by {:.3g} of the smaller diameter, {} is allowed: there is no room "
+      "for so many; ask for fewer, or enlarge the domain",
+      state.id[result.a], entry[result.a], state.id[result.b], entry[result.b], result.overlap,
+      relaxed_overlap);
 }
 
 int material_index(const Entry& entry, const std::vector<std::string>& names) {
@@ -145,7 +149,7 @@ std::vector<std::string> material_names(const ParticleSettings& settings) {
   return names;
 }
 
-ParticleState insert_particles(const Scene& scene, const Mesh& mesh) {
+ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progress& alive) {
   const Domain domain = particle_domain(scene, mesh);
   const std::vector<std::string> names = material_names(scene.particles);
   ParticleState state;
@@ -154,17 +158,18 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh) {
     const Entry entry{settings, static_cast<int>(&settings - scene.particles.insertion.data()) + 1};
     const int material = material_index(entry, names);
     const double density = scene.particles.materials.at(settings.material).density;
-    for (const ListedParticle& particle : placed(entry, domain)) {
+    for (const ListedParticle& particle : placed(scene, entry, domain, alive)) {
       state.id.push_back(state.size() + 1);
       state.position.push_back(particle.position);
       state.velocity.push_back(particle.velocity);
-      state.spin.push_back(Vector3::Zero());
+      state.spin.push_back(particle.spin);
       state.radius.push_back(0.5 * *particle.diameter);
       state.density.push_back(density);
       state.material.push_back(material);
       entry_of.push_back(entry.number);
     }
   }
+  if (scene.particles.overlaps == Overlaps::relax) relax(domain, entry_of, state);
   check_placement(state, entry_of, domain);
   return state;
 }

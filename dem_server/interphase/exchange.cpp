@@ -29,10 +29,12 @@ Vector3 predicted_velocity(const ExchangeSettings& settings, const Prediction& p
   if (settings.buoyancy) {
     coming -= settings.fluid.density * settings.gravity / particles.density[i];
   }
-  if (!(past.length > 0)) return velocity + window * coming;
-  const Vector3 load = settings.gravity + past.forces->force[i] / bulk.mass[i];
-  const double carried = carried_share(load, (velocity - past.velocity_before[i]) / past.length);
-  const Vector3 drag = past.forces->drag_impulse[i] / (bulk.mass[i] * past.length);
+  const int before = past.row_before.empty() ? i : past.row_before[i];
+  if (!(past.length > 0) || before < 0) return velocity + window * coming;
+  const Vector3 load = settings.gravity + past.forces->force[before] / bulk.mass[i];
+  const Vector3 change = velocity - past.velocity_before[before];
+  const double carried = carried_share(load, change / past.length);
+  const Vector3 drag = past.forces->drag_impulse[before] / (bulk.mass[i] * past.length);
   return velocity + window * ((1 - carried) * coming - carried * drag);
 }
 

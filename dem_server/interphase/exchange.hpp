@@ -84,6 +84,9 @@ struct Prediction {
   std::span<const Vector3> velocity_before;  ///< [m/s] at the start of the window just ended
   double length = 0;                         ///< [s] of that window; 0: there was none, s = 0
   const WindowForces* forces = nullptr;      ///< that acted in it
+  /// Row of each particle in that window, -1 for one that has just come in: s = 0. Empty: the same
+  /// rows.
+  std::span<const int> row_before = {};
 };
 
 /// Fills weights (already built), k and v* of an offer for a coming window of `offer.window`.

@@ -16,8 +16,9 @@ const char* name_of(ParticleBackend backend) {
   return backend == ParticleBackend::native ? "native" : "kinematic";
 }
 
-std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh) {
-  ParticleState particles = insert_particles(scene, mesh);
+std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh,
+                                            const Progress& alive) {
+  ParticleState particles = insert_particles(scene, mesh, alive);
   switch (scene.particles.backend) {
     case ParticleBackend::native:
       return make_native_engine(scene, mesh, std::move(particles));
@@ -34,6 +35,8 @@ class ChosenByScene : public Participant {
 
   Identity identity() const override { return particle_identity(backend_); }
 
+  void keep_alive(Progress alive) override { alive_ = std::move(alive); }
+
   void configure(const Scene& scene, const Mesh& mesh) override {
     if (scene.interphase.voidage == VoidageMap::prescribed) {
       chosen_ = std::make_unique<PrescribedSolids>(backend_);
@@ -45,7 +48,8 @@ class ChosenByScene : public Participant {
             "--backend {}",
             name_of(scene.particles.backend), backend_, name_of(scene.particles.backend));
       }
-      chosen_ = std::make_unique<ParticleParticipant>(backend_, make_engine);
+      chosen_ = std::make_unique<ParticleParticipant>(
+          backend_, [this](const Scene& s, const Mesh& m) { return make_engine(s, m, alive_); });
     }
     chosen_->configure(scene, mesh);
   }
@@ -61,6 +65,7 @@ class ChosenByScene : public Participant {
 
  private:
   std::string backend_;
+  Progress alive_;
   std::unique_ptr<Participant> chosen_;  ///< set by configure, which the session calls first
 };
 

@@ -41,6 +41,8 @@ Identity ParticleParticipant::identity() const { return particle_identity(backen
 void ParticleParticipant::configure(const Scene& scene, const Mesh& mesh) {
   engine_ = make_engine_(scene, mesh);
   settings_ = exchange_settings(scene, engine_->mobile());
+  flow_.reset();
+  if (particles_flow(scene)) flow_.emplace(scene, mesh, engine_->particles());
   builder_.emplace(mesh, scene.interphase.voidage, settings_.threads);
   sub_steps_ = sub_steps(scene);
   first_window_ = scene.coupling.window;
@@ -92,12 +94,16 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
 
   pending_ = true;  // from here on there is something to roll back
   engine_->advance(window.length, sub_steps_, forces_.force, progress);
+  // The bulk is still that of the rows which moved.
+  if (flow_) flow_->advance(window, bulk_, *engine_);
 
   map_particles(window.step);
   candidate_.window = window.length;
   candidate_.initial = false;
   offer_maker_.make(settings_, fluid, voidage_, engine_->particles(), bulk_,
-                    {velocity_before_, window.length, &forces_}, candidate_);
+                    {velocity_before_, window.length, &forces_,
+                     flow_ ? flow_->row_before() : std::span<const int>{}},
+                    candidate_);
   // By the weights the impulse was computed with: those are what the fluid answered to.
   deposit_vectors(committed_.weights, forces_.impulse, settings_.threads, impulse_given_);
   publish(seconds_since(began), out);
@@ -123,12 +129,14 @@ void ParticleParticipant::publish(double wall_seconds, Fields& out) {
   out.add_number(field::particle_volume, total(bulk_.volume));
   out.add_number(field::particle_count, engine_->particles().size());
   out.add_number(field::particle_mass, total(bulk_.mass));
+  if (flow_) publish_flow(flow_->window(), out);
   out.add_number(field::wall_seconds, wall_seconds);
 }
 
 void ParticleParticipant::commit() {
   if (!pending_) throw ProtocolError("particle side: asked to commit, but nothing was advanced");
   engine_->commit();
+  if (flow_) flow_->commit();
   std::swap(committed_, candidate_);
   pending_ = false;
 }
@@ -136,6 +144,7 @@ void ParticleParticipant::commit() {
 void ParticleParticipant::rollback() {
   if (!pending_) return;  // the window failed before anything was changed
   engine_->rollback();
+  if (flow_) flow_->rollback();
   pending_ = false;
 }
 

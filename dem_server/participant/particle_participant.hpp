@@ -1,8 +1,9 @@
 // The particle side of a session: an engine that moves particles, and all that is between the
 // phases.
 //
-// One window: forces from the last offer and the fluid's answer -> the engine's sub-steps ->
-// weights, voidage, mean velocity of the new positions -> the next offer of drag.
+// One window: forces from the last offer and the fluid's answer -> the engine's sub-steps -> who
+// leaves and who comes in -> weights, voidage, mean velocity of the new positions -> the next offer
+// of drag.
 #pragma once
 
 #include <functional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "dem_server/interphase/exchange.hpp"
+#include "dem_server/participant/particle_flow.hpp"
 #include "proto/participant/participant.hpp"
 
 namespace fluxpact {
@@ -52,6 +54,7 @@ class ParticleParticipant : public Participant {
   EngineFactory make_engine_;
   std::unique_ptr<ParticleEngine> engine_;
   std::optional<WeightsBuilder> builder_;
+  std::optional<ParticleFlow> flow_;  ///< none: nobody can come in or leave
   ExchangeSettings settings_;
   int sub_steps_ = 1;
   double first_window_ = 0;  ///< [s]

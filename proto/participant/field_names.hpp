@@ -20,6 +20,19 @@ inline constexpr auto particle_volume = "particle_volume";  ///< Σ V_p inside t
 inline constexpr auto particle_count = "particle_count";
 inline constexpr auto particle_mass = "particle_mass";  ///< [kg]
 
+// From the particle side if particles can come in or leave (particles_flow): of the window; none at
+// time 0. Those that leave or come in do so at its end.
+inline constexpr auto particles_entered = "particles_entered";
+inline constexpr auto particles_left = "particles_left";
+inline constexpr auto particles_waiting =
+    "particles_waiting";  ///< that were due so far and found no room
+inline constexpr auto particle_mass_entered = "particle_mass_entered";  ///< [kg]
+inline constexpr auto particle_mass_left = "particle_mass_left";        ///< [kg]
+inline constexpr auto particle_momentum_entered =
+    "particle_momentum_entered";  ///< Σ m v [N s], vector, one row
+inline constexpr auto particle_momentum_left =
+    "particle_momentum_left";  ///< Σ m v [N s], vector, one row
+
 // From the fluid side. One row a face, or a cell.
 inline constexpr auto face_flux =
     "face_flux";  ///< Φ: superficial mass flux of the window [kg/s], out of the owner

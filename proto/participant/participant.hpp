@@ -78,6 +78,10 @@ class Participant {
   virtual ~Participant() = default;
   virtual Identity identity() const = 0;
 
+  /// What long work in `configure` is to call now and then; given before it. Without it the
+  /// coordinator takes a silence of launch.start_deadline for a hang.
+  virtual void keep_alive(Progress /*alive*/) {}
+
   /// Build everything for this scene and mesh. The committed state is that of time 0.
   virtual void configure(const Scene& scene, const Mesh& mesh) = 0;
 

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "proto/base/errors.hpp"
@@ -137,6 +138,9 @@ class Session {
 
   void take_mesh(const Message& message) {
     const Mesh mesh = mesh_of(message);
+    last_sent_ = SteadyClock::now();
+    participant_.keep_alive(
+        [this] { say_alive(std::min(deadline_, scene_.launch.start_deadline)); });
     participant_.configure(scene_, mesh);
     spdlog::info("ready for session {}: '{}', {} cells", session_, scene_.scene.name, mesh.cells());
     Message result;
@@ -155,13 +159,15 @@ class Session {
   void advance(const Message& message, Fields& out) {
     const Window window{message.header.step, number(message.header, "start"),
                         number(message.header, "length")};
-    const Progress alive = [this] {
-      if (SteadyClock::now() - last_sent_ < milliseconds(deadline_ / 4)) return;
-      Message heartbeat;
-      send(heartbeat);
-    };
     last_sent_ = SteadyClock::now();
-    participant_.advance(window, fields_of(message), out, alive);
+    participant_.advance(window, fields_of(message), out, [this] { say_alive(deadline_); });
+  }
+
+  /// A sign of life if the last one is a good part of the other side's patience [s] ago.
+  void say_alive(double patience) {
+    if (SteadyClock::now() - last_sent_ < milliseconds(patience / 4)) return;
+    Message heartbeat;
+    send(heartbeat);
   }
 
   Participant& participant_;

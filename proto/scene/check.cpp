@@ -62,7 +62,7 @@ void check_times(const Scene& scene, Findings& findings) {
                  fmt::format("{} s gives {:.3g} steps in a window; at most {} are counted",
                              time_step, window / time_step, most));
   } else if (time_step == 0 && scene.particles.backend == ParticleBackend::native &&
-             !scene.particles.insertion.empty()) {
+             has_particles(scene)) {
     findings.add("particles.time_step",
                  "missing; required for particles of the native backend: a number in s, > 0");
   }
@@ -239,22 +239,6 @@ void check_pairs(const Scene& scene, Findings& findings) {
   }
 }
 
-void check_insertion(const Scene& scene, Findings& findings) {
-  if (!is_sound(findings, {"particles.materials"})) {
-    return;
-  }
-  const std::vector<std::string> materials = names_in(scene.particles.materials);
-  for (std::size_t i = 0; i < scene.particles.insertion.size(); ++i) {
-    const std::string path = fmt::format("particles.insertion[{}].material", i);
-    const std::string& name = scene.particles.insertion[i].material;
-    if (findings.sound(path) && !scene.particles.materials.contains(name)) {
-      findings.add(path, fmt::format("`{}` is none of particles.materials{}; allowed: {}", name,
-                                     nearest_hint(name, materials),
-                                     materials.empty() ? "none is given" : joined(materials)));
-    }
-  }
-}
-
 void check_interphase(const Scene& scene, Findings& findings) {
   if (!is_sound(findings, {"interphase.voidage", "interphase.prescribed"})) {
     return;
@@ -270,11 +254,13 @@ void check_interphase(const Scene& scene, Findings& findings) {
     findings.add("interphase.prescribed",
                  "has no meaning here, only with `voidage: prescribed`; remove it");
   }
-  if (prescribed && !scene.particles.insertion.empty() && findings.sound("particles.insertion")) {
+  const auto refuse_entries = [&](const char* path, bool empty) {
+    if (!prescribed || empty || !findings.sound(path)) return;
     findings.add(
-        "particles.insertion",
-        "with `interphase.voidage: prescribed` there are no particles; remove the entries");
-  }
+        path, "with `interphase.voidage: prescribed` there are no particles; remove the entries");
+  };
+  refuse_entries("particles.insertion", scene.particles.insertion.empty());
+  refuse_entries("particles.inflow", scene.particles.inflow.empty());
   if (interphase.prescribed) {
     try {
       const Expression formula(interphase.prescribed->voidage);
@@ -334,6 +320,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_boundaries(scene, findings);
   check_scalars(scene, findings);
   check_pairs(scene, findings);
+  check_contact_laws(scene, findings);
   check_insertion(scene, findings);
   check_interphase(scene, findings);
   check_numerics(scene, findings);

@@ -13,4 +13,9 @@ void check_scene(const Scene& scene, Findings& findings);
 /// The part of it for fluid.scalars and fluid.turbulence.
 void check_scalars(const Scene& scene, Findings& findings);
 
+/// The part of it for the contact laws: which keys they need, and which have no meaning with them.
+void check_contact_laws(const Scene& scene, Findings& findings);
+/// The part of it for particles.insertion, inflow and outflow.
+void check_insertion(const Scene& scene, Findings& findings);
+
 }  // namespace fluxpact

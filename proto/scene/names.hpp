@@ -130,12 +130,44 @@ inline constexpr auto enum_names<ParticleBackend> = std::to_array<Named<Particle
 template <>
 inline constexpr auto enum_names<ContactLaw> = std::to_array<Named<ContactLaw>>({
     {ContactLaw::linear, "linear"},
+    {ContactLaw::hertz, "hertz"},
+});
+template <>
+inline constexpr auto enum_names<RollingLaw> = std::to_array<Named<RollingLaw>>({
+    {RollingLaw::none, "none"},
+    {RollingLaw::constant_torque, "constant_torque"},
+    {RollingLaw::spring_dashpot, "spring_dashpot"},
+});
+template <>
+inline constexpr auto enum_names<CohesionLaw> = std::to_array<Named<CohesionLaw>>({
+    {CohesionLaw::none, "none"},
+    {CohesionLaw::sjkr, "sjkr"},
+    {CohesionLaw::jkr, "jkr"},
+    {CohesionLaw::liquid_bridge, "liquid_bridge"},
 });
 template <>
 inline constexpr auto enum_names<InsertionType> = std::to_array<Named<InsertionType>>({
     {InsertionType::packing, "packing"},
+    {InsertionType::settled, "settled"},
     {InsertionType::lattice, "lattice"},
     {InsertionType::file, "file"},
+});
+template <>
+inline constexpr auto enum_names<SizeDistribution> = std::to_array<Named<SizeDistribution>>({
+    {SizeDistribution::table, "table"},
+    {SizeDistribution::uniform, "uniform"},
+    {SizeDistribution::normal, "normal"},
+    {SizeDistribution::lognormal, "lognormal"},
+});
+template <>
+inline constexpr auto enum_names<SizeWeight> = std::to_array<Named<SizeWeight>>({
+    {SizeWeight::number, "number"},
+    {SizeWeight::mass, "mass"},
+});
+template <>
+inline constexpr auto enum_names<Overlaps> = std::to_array<Named<Overlaps>>({
+    {Overlaps::refuse, "refuse"},
+    {Overlaps::relax, "relax"},
 });
 template <>
 inline constexpr auto enum_names<WallSource> = std::to_array<Named<WallSource>>({

@@ -33,6 +33,8 @@ constexpr auto suffixes = std::to_array<Suffix>({
     {"kg/m3", Dimension::density, 0},
     {"Pa", Dimension::pressure, 0},
     {"kPa", Dimension::pressure, 3},
+    {"MPa", Dimension::pressure, 6},
+    {"GPa", Dimension::pressure, 9},
     {"Pa.s", Dimension::viscosity, 0},
     {"N/m", Dimension::stiffness, 0},
     {"kg/s", Dimension::mass_flow, 0},
@@ -40,6 +42,14 @@ constexpr auto suffixes = std::to_array<Suffix>({
     {"m2/s", Dimension::diffusivity, 0},
     {"W/(m.K)", Dimension::conductivity, 0},
     {"J/(kg.K)", Dimension::heat_capacity, 0},
+    {"J/m3", Dimension::energy_density, 0},
+    {"kJ/m3", Dimension::energy_density, 3},
+    {"J/m2", Dimension::surface_energy, 0},
+    {"mJ/m2", Dimension::surface_energy, -3},
+    {"m3", Dimension::volume, 0},
+    {"cm3", Dimension::volume, -6},
+    {"mm3", Dimension::volume, -9},
+    {"rad", Dimension::angle, 0},
 });
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -22,6 +22,10 @@ enum class Dimension {
   diffusivity,
   conductivity,
   heat_capacity,
+  energy_density,
+  surface_energy,
+  volume,
+  angle,
 };
 
 /// The SI unit in which numbers without a suffix are taken, e.g. "m/s"; empty for Dimension::none.

@@ -210,6 +210,30 @@ void read_value(const Spot& spot, std::array<int, 3>& value) {
   }
 }
 
+/// A list of texts, each at most once.
+void read_value(const Spot& spot, std::vector<std::string>& value) {
+  if (spot.node.kind != TreeNode::Kind::list) {
+    if (spot.node.kind != TreeNode::Kind::refused) {
+      spot.refuse(fmt::format("{} where a list of {} is expected, e.g. [a, b]", seen(spot.node),
+                              ValueKind<std::string>::text(spot.key)));
+    }
+    return;
+  }
+  value.clear();
+  for (std::size_t i = 0; i < spot.node.children.size(); ++i) {
+    const std::string path = fmt::format("{}[{}]", spot.path, i);
+    spot.findings.remember(path, spot.node.children[i].place);
+    const Spot item{spot.node.children[i], path, spot.key, spot.findings};
+    std::string text;
+    read_value(item, text);
+    if (std::find(value.begin(), value.end(), text) != value.end()) {
+      item.refuse(fmt::format("`{}` stands here a second time; keep one", text));
+    } else if (!text.empty()) {
+      value.push_back(text);
+    }
+  }
+}
+
 void read_value(const Spot& spot, std::array<std::string, 2>& value) {
   std::array<std::string, 2> names;
   if (read_fixed_list(spot, names, expectation<std::array<std::string, 2>>(spot.key))) {

@@ -43,6 +43,7 @@ void read_value(const Spot& spot, Formula& value);
 void read_value(const Spot& spot, VectorFormula& value);
 void read_value(const Spot& spot, std::array<int, 3>& value);
 void read_value(const Spot& spot, std::array<std::string, 2>& value);
+void read_value(const Spot& spot, std::vector<std::string>& value);
 
 template <class Enum>
 requires std::is_enum_v<Enum>

@@ -109,8 +109,11 @@ void fill_in(Scene& scene) {
     scene.output.directory = "runs/" + scene.scene.name;
   }
   for (PairSettings& pair : scene.particles.contact.pairs) {
-    if (!pair.tangential_stiffness) {
-      pair.tangential_stiffness = 2.0 / 7.0 * pair.normal_stiffness;
+    if (pair.normal_stiffness && !pair.tangential_stiffness) {
+      pair.tangential_stiffness = 2.0 / 7.0 * *pair.normal_stiffness;
+    }
+    if (scene.particles.contact.rolling == RollingLaw::spring_dashpot && !pair.rolling_damping) {
+      pair.rolling_damping = 0.3;
     }
   }
   for (InsertionSettings& entry : scene.particles.insertion) {

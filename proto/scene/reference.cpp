@@ -145,7 +145,8 @@ std::string unit_table() {
        {Dimension::time, Dimension::length, Dimension::velocity, Dimension::acceleration,
         Dimension::density, Dimension::pressure, Dimension::viscosity, Dimension::stiffness,
         Dimension::mass_flow, Dimension::diffusivity, Dimension::conductivity,
-        Dimension::heat_capacity}) {
+        Dimension::heat_capacity, Dimension::energy_density, Dimension::surface_energy,
+        Dimension::volume, Dimension::angle}) {
     rows += fmt::format("| {} | {} |\n", si_unit(dimension), unit_suffixes(dimension));
   }
   return rows;

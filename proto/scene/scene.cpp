@@ -1,5 +1,6 @@
 #include "proto/scene/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,21 @@ int sub_steps(const Scene& scene) {
   }
   const double quotient = scene.coupling.window / scene.particles.time_step;
   return static_cast<int>(is_whole(quotient) ? std::round(quotient) : std::ceil(quotient));
+}
+
+bool has_particles(const Scene& scene) {
+  return !scene.particles.insertion.empty() || !scene.particles.inflow.empty();
+}
+
+bool particles_flow(const Scene& scene) {
+  const ParticleSettings& particles = scene.particles;
+  if (!has_particles(scene)) return false;
+  if (!particles.inflow.empty()) return true;
+  if (particles.outflow) return !particles.outflow->empty();
+  if (particles.walls == WallSource::none) return true;
+  return std::any_of(
+      scene.fluid.boundaries.begin(), scene.fluid.boundaries.end(),
+      [](const auto& boundary) { return boundary.second.type == BoundaryType::pressure; });
 }
 
 int windows(const Scene& scene) {

@@ -246,38 +246,95 @@ struct FluidSettings {
 // ---- particles ----
 
 enum class ParticleBackend { native, kinematic };
-enum class ContactLaw { linear };
+enum class ContactLaw { linear, hertz };
+enum class RollingLaw { none, constant_torque, spring_dashpot };
+enum class CohesionLaw { none, sjkr, jkr, liquid_bridge };
 
 struct MaterialSettings {
-  double density = 0;  ///< [kg/m³]
+  double density = 0;                    ///< [kg/m³]
+  std::optional<double> youngs_modulus;  ///< [Pa] law hertz
+  std::optional<double> poisson_ratio;   ///< [-] law hertz
 };
 
+/// Elasticity of all walls, law hertz.
+struct WallMaterialSettings {
+  double youngs_modulus = 0;  ///< [Pa]
+  double poisson_ratio = 0;   ///< [-]
+};
+
+/// Which of the optional numbers are needed follows from `law`, `rolling` and `cohesion`.
 struct PairSettings {
   std::array<std::string, 2> between;          ///< two materials, or a material and `walls`
-  double normal_stiffness = 0;                 ///< [N/m]
-  std::optional<double> tangential_stiffness;  ///< [N/m]; default 2/7 of the normal one
+  std::optional<double> normal_stiffness;      ///< [N/m] linear
+  std::optional<double> tangential_stiffness;  ///< [N/m] linear; default 2/7 of the normal one
   double restitution = 0.9;                    ///< [-]
   double friction = 0.3;                       ///< [-]
+  std::optional<double> rolling_friction;      ///< [-] with a rolling law
+  std::optional<double> rolling_damping;  ///< [-] spring_dashpot: share of critical; default 0.3
+  std::optional<double> cohesion_energy_density;  ///< [J/m³] sjkr
+  std::optional<double> work_of_adhesion;         ///< [J/m²] jkr
+  std::optional<double> liquid_volume;            ///< [m³] liquid_bridge
+  std::optional<double> surface_tension;          ///< [N/m] liquid_bridge
+  std::optional<double> contact_angle;            ///< [rad] liquid_bridge
 };
 
 struct ContactSettings {
   ContactLaw law = ContactLaw::linear;
+  RollingLaw rolling = RollingLaw::none;
+  CohesionLaw cohesion = CohesionLaw::none;
+  std::optional<WallMaterialSettings> walls;
   std::vector<PairSettings> pairs;
 };
 
-enum class InsertionType { packing, lattice, file };
+enum class InsertionType { packing, settled, lattice, file };
+enum class SizeDistribution { table, uniform, normal, lognormal };
+enum class SizeWeight { number, mass };
+
+/// How the diameters of spheres are spread.
+struct SizeSettings {
+  SizeDistribution distribution = SizeDistribution::table;
+  SizeWeight by = SizeWeight::number;        ///< what the weights or the density count
+  std::vector<std::array<double, 2>> table;  ///< [m], weight; the diameters ascend
+  double mean = 0;                           ///< [m] normal: mean, lognormal: median
+  double deviation = 0;  ///< normal: standard deviation over mean, lognormal: that of ln d [-]
+  std::array<double, 2> range{0, 0};  ///< [m] all but table: none is outside
+};
 
 struct InsertionSettings {
   InsertionType type = InsertionType::packing;
   std::string material;
-  double diameter = 0;        ///< [m] (file: a column of the file wins)
-  int count = 0;              ///< packing: particles
-  Region within;              ///< packing, lattice; default: the whole domain
-  int seed = 1;               ///< packing
+  double diameter = 0;                ///< [m] (file: a column of the file wins); 0: `sizes`
+  std::optional<SizeSettings> sizes;  ///< packing, settled
+  int count = 0;                      ///< packing, settled: particles
+  double fraction = 0;                ///< the same as solid fraction of `within` [-]
+  double number_density = 0;          ///< the same as particles per volume of `within` [1/m³]
+  double height = 0;                  ///< [m] settled: of the bed above the bottom of `within`
+  Region within;                      ///< default: the whole domain
+  int seed = 1;                       ///< packing, settled
   double spacing = 0;         ///< [m] lattice: distance of neighbours; default 1.001 diameters
   Vector3 velocity{0, 0, 0};  ///< [m/s] packing, lattice
-  std::string path;           ///< file: CSV with a header line x,y,z[,vx,vy,vz][,diameter]
+  std::string path;           ///< file
+  std::string group;          ///< file: HDF5 group of the datasets; empty: found
 };
+
+/// Particles that come in during the run. Exactly one of `patch` and `within`, of `diameter` and
+/// `sizes`, of the two rates.
+struct InflowSettings {
+  std::string patch;             ///< through its faces
+  std::optional<Region> within;  ///< anywhere in this box
+  std::string material;
+  double diameter = 0;  ///< [m]
+  std::optional<SizeSettings> sizes;
+  double mass_rate = 0;        ///< [kg/s]
+  double number_rate = 0;      ///< [1/s]
+  Vector3 velocity{0, 0, 0};   ///< [m/s] of each as it comes in
+  double start = 0;            ///< [s]
+  std::optional<double> stop;  ///< [s]; default: never
+  int seed = 1;
+};
+
+/// What to do with spheres that overlap at time 0 by more than a tenth of the smaller diameter.
+enum class Overlaps { refuse, relax };
 
 enum class WallSource { from_mesh, none };
 
@@ -296,6 +353,9 @@ struct ParticleSettings {
   ContactSettings contact;
   WallSource walls = WallSource::from_mesh;
   std::vector<InsertionSettings> insertion;
+  Overlaps overlaps = Overlaps::refuse;
+  std::vector<InflowSettings> inflow;
+  std::optional<std::vector<std::string>> outflow;  ///< patches; default: every open side
   ParticleNumerics numerics;
 };
 
@@ -337,5 +397,13 @@ int sub_steps(const Scene& scene);
 
 /// Windows from time 0 to end_time.
 int windows(const Scene& scene);
+
+/// Whether particles can come in or leave during the run: the particle side then says how many did,
+/// and the audit has columns for it. They can leave where particles.outflow says so or, without
+/// it, if there is a patch of type pressure or no wall at all.
+bool particles_flow(const Scene& scene);
+
+/// Whether there are particles at any time.
+bool has_particles(const Scene& scene);
 
 }  // namespace fluxpact

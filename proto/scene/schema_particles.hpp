@@ -2,10 +2,17 @@
 // schema.hpp.
 #pragma once
 
+#include <numbers>
+
 #include "proto/scene/key.hpp"
 #include "proto/scene/scene.hpp"
+#include "proto/scene/schema_insertion.hpp"
 
 namespace fluxpact {
+
+// The contact laws stand in another section than what they need: check_contact.cpp demands and
+// refuses these keys, `only_with` is for the reference.
+inline constexpr Range poisson_range{.lower = -1, .upper = 0.5, .without_lower = true};
 
 template <class Visit>
 void describe(Visit& visit, MaterialSettings& material) {
@@ -15,6 +22,87 @@ void describe(Visit& visit, MaterialSettings& material) {
          .required = true,
          .meaning = "Of the solid."},
         material.density);
+  visit({.name = "youngs_modulus",
+         .dimension = Dimension::pressure,
+         .range = positive,
+         .otherwise = "**required** with hertz",
+         .only_with = "contact.law: hertz",
+         .meaning = "Of the solid."},
+        material.youngs_modulus);
+  visit({.name = "poisson_ratio",
+         .range = poisson_range,
+         .otherwise = "**required** with hertz",
+         .only_with = "contact.law: hertz",
+         .meaning = "Of the solid."},
+        material.poisson_ratio);
+}
+
+template <class Visit>
+void describe(Visit& visit, WallMaterialSettings& walls) {
+  visit({.name = "youngs_modulus",
+         .dimension = Dimension::pressure,
+         .range = positive,
+         .required = true,
+         .meaning = "Of the walls."},
+        walls.youngs_modulus);
+  visit({.name = "poisson_ratio",
+         .range = poisson_range,
+         .required = true,
+         .meaning = "Of the walls."},
+        walls.poisson_ratio);
+}
+
+/// What adds to the spring and dashpot of a pair.
+template <class Visit>
+void describe_rolling_and_cohesion(Visit& visit, PairSettings& pair) {
+  visit({.name = "rolling_friction",
+         .range = not_negative,
+         .otherwise = "**required** with a rolling law",
+         .only_with = "contact.rolling: constant_torque | spring_dashpot",
+         .meaning = "Largest rolling torque over normal force and effective radius."},
+        pair.rolling_friction);
+  visit({.name = "rolling_damping",
+         .range = not_negative,
+         .otherwise = "0.3",
+         .only_with = "contact.rolling: spring_dashpot",
+         .meaning = "Share of critical damping of the rolling spring."},
+        pair.rolling_damping);
+  visit({.name = "cohesion_energy_density",
+         .dimension = Dimension::energy_density,
+         .range = not_negative,
+         .otherwise = "**required** with sjkr",
+         .only_with = "contact.cohesion: sjkr",
+         .meaning = "Attraction over the area of contact."},
+        pair.cohesion_energy_density);
+  visit(
+      {.name = "work_of_adhesion",
+       .dimension = Dimension::surface_energy,
+       .range = not_negative,
+       .otherwise = "**required** with jkr",
+       .only_with = "contact.cohesion: jkr",
+       .meaning = "To part the two surfaces, per area: twice the surface energy of equal solids."},
+      pair.work_of_adhesion);
+  visit({.name = "liquid_volume",
+         .dimension = Dimension::volume,
+         .range = not_negative,
+         .otherwise = "**required** with liquid_bridge",
+         .only_with = "contact.cohesion: liquid_bridge",
+         .meaning = "Of the bridge at each contact; 0: these stay dry."},
+        pair.liquid_volume);
+  visit({.name = "surface_tension",
+         .dimension = Dimension::stiffness,
+         .range = not_negative,
+         .otherwise = "**required** with liquid_bridge",
+         .only_with = "contact.cohesion: liquid_bridge",
+         .meaning = "Of the liquid."},
+        pair.surface_tension);
+  visit({.name = "contact_angle",
+         .dimension = Dimension::angle,
+         .range = {.lower = 0, .upper = std::numbers::pi / 2},
+         .otherwise = "**required** with liquid_bridge",
+         .only_with = "contact.cohesion: liquid_bridge",
+         .meaning = "Between liquid and solid, measured in the liquid."},
+        pair.contact_angle);
 }
 
 template <class Visit>
@@ -27,13 +115,15 @@ void describe(Visit& visit, PairSettings& pair) {
   visit({.name = "normal_stiffness",
          .dimension = Dimension::stiffness,
          .range = positive,
-         .required = true,
+         .otherwise = "**required** with linear",
+         .only_with = "contact.law: linear",
          .meaning = "Spring along the line of centres."},
         pair.normal_stiffness);
   visit({.name = "tangential_stiffness",
          .dimension = Dimension::stiffness,
          .range = not_negative,
          .otherwise = "2/7 of `normal_stiffness`",
+         .only_with = "contact.law: linear",
          .meaning = "Spring across the line of centres."},
         pair.tangential_stiffness);
   visit({.name = "restitution",
@@ -42,80 +132,35 @@ void describe(Visit& visit, PairSettings& pair) {
         pair.restitution);
   visit({.name = "friction", .range = not_negative, .meaning = "Coulomb's coefficient."},
         pair.friction);
+  describe_rolling_and_cohesion(visit, pair);
 }
 
 template <class Visit>
 void describe(Visit& visit, ContactSettings& contact) {
-  visit({.name = "law", .meaning = "`linear`: spring and dashpot (Cundall and Strack 1979)."},
+  visit({.name = "law",
+         .meaning = "`linear`: springs and dashpots (Cundall and Strack 1979); `hertz`: elastic "
+                    "spheres (Hertz 1882, Mindlin 1949, damping after Tsuji et al. 1992)."},
         contact.law);
+  visit({.name = "rolling",
+         .meaning = "Torque against rolling (Ai et al. 2011): `constant_torque` is their model A, "
+                    "`spring_dashpot` C, which also holds particles at rest."},
+        contact.rolling);
+  visit({.name = "cohesion",
+         .meaning =
+             "Attraction: `sjkr` in proportion to the area of contact; `jkr` (with `law: hertz`) "
+             "of adhesive elastic spheres (Johnson, Kendall and Roberts 1971); "
+             "`liquid_bridge` forms on contact and holds up to its rupture (Willett et al. "
+             "2000)."},
+        contact.cohesion);
+  visit({.name = "walls",
+         .otherwise = "not set; required with hertz and pairs with `walls`",
+         .only_with = "law: hertz",
+         .meaning = "The elasticity of the walls."},
+        contact.walls);
   visit({.name = "pairs",
          .meaning = "One entry for each pair of materials and for each material with `walls`; the "
                     "native backend needs all."},
         contact.pairs);
-}
-
-template <class Visit>
-void describe(Visit& visit, InsertionSettings& entry) {
-  visit({.name = "type",
-         .required = true,
-         .meaning = "`packing`: a number of spheres at random; `lattice`: a region filled with a "
-                    "regular lattice; `file`: read."},
-        entry.type);
-  const bool packing = entry.type == InsertionType::packing;
-  const bool file = entry.type == InsertionType::file;
-  visit({.name = "material",
-         .text = TextRule::name,
-         .required = true,
-         .meaning = "One of `particles.materials`."},
-        entry.material);
-  visit({.name = "diameter",
-         .dimension = Dimension::length,
-         .range = positive,
-         .required = !file,
-         .otherwise = "the file's column `diameter`, which wins",
-         .meaning = "Of the spheres. Optional with `type: file`, required else."},
-        entry.diameter);
-  visit({.name = "count",
-         .range = {.lower = 1},
-         .required = true,
-         .applies = packing,
-         .only_with = "type: packing",
-         .meaning = "Number of spheres."},
-        entry.count);
-  visit({.name = "within",
-         .otherwise = "the whole domain",
-         .applies = !file,
-         .only_with = "type: packing | lattice",
-         .meaning = "Where the spheres start."},
-        entry.within);
-  visit({.name = "seed",
-         .range = not_negative,
-         .applies = packing,
-         .only_with = "type: packing",
-         .meaning = "Of the random numbers: the same seed gives the same packing."},
-        entry.seed);
-  visit({.name = "spacing",
-         .dimension = Dimension::length,
-         .range = positive,
-         .otherwise = "1.001 diameters",
-         .applies = entry.type == InsertionType::lattice,
-         .only_with = "type: lattice",
-         .meaning = "Distance of neighbours."},
-        entry.spacing);
-  visit({.name = "velocity",
-         .dimension = Dimension::velocity,
-         .applies = !file,
-         .only_with = "type: packing | lattice",
-         .meaning = "Of all spheres at the start."},
-        entry.velocity);
-  visit({.name = "path",
-         .required = true,
-         .applies = file,
-         .only_with = "type: file",
-         .meaning =
-             "CSV with a header line x,y,z[,vx,vy,vz][,diameter], in SI units; relative to the "
-             "folder of the scene."},
-        entry.path);
 }
 
 template <class Visit>
@@ -152,6 +197,20 @@ void describe(Visit& visit, ParticleSettings& particles) {
         particles.walls);
   visit({.name = "insertion", .meaning = "The particles at time 0; none: an empty domain."},
         particles.insertion);
+  visit({.name = "overlaps",
+         .meaning = "Spheres at time 0 that overlap by more than a tenth of the smaller diameter, "
+                    "or stick out of the domain by that: `refuse`: an error that names them; "
+                    "`relax`: all are pushed apart first, until none overlaps by more than 1 %."},
+        particles.overlaps);
+  visit({.name = "inflow", .meaning = "Particles that come in during the run; none: nobody does."},
+        particles.inflow);
+  visit({.name = "outflow",
+         .text = TextRule::name,
+         .otherwise = "every patch of type pressure that fills a side of the domain",
+         .meaning = "Patches of type pressure through which particles leave the domain, once "
+                    "their centre has passed. Elsewhere, and with an empty list anywhere, a "
+                    "particle that gets out is an error."},
+        particles.outflow);
   visit({.name = "numerics", .meaning = "How the particles are computed."}, particles.numerics);
 }
 

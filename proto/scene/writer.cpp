@@ -69,6 +69,9 @@ class SectionWriter {
       write<double>(key, value);
     }
   }
+  void write(const Key& key, int& value) {
+    if (key.otherwise.empty() || value != 0) write<int>(key, value);
+  }
   void write(const Key& key, std::string& value) {
     if (key.otherwise.empty() || !value.empty()) {
       write<std::string>(key, value);

@@ -1,5 +1,7 @@
 #include "dem_server/backends/kinematic/kinematic_engine.hpp"
 
+#include <optional>
+
 #include "dem_server/backends/domain.hpp"
 #include "dem_server/backends/particle_rows.hpp"
 #include "proto/base/errors.hpp"
@@ -11,8 +13,8 @@ class KinematicEngine final : public ParticleEngine {
  public:
   KinematicEngine(const Scene& scene, const Mesh& mesh, ParticleState initial)
       : domain_(particle_domain(scene, mesh)),
-        presented_(
-            checked_rows(std::move(initial), static_cast<int>(scene.particles.materials.size()))),
+        materials_(static_cast<int>(scene.particles.materials.size())),
+        presented_(checked_rows(std::move(initial), materials_)),
         committed_position_(presented_.position) {}
 
   const ParticleState& particles() const override { return presented_; }
@@ -27,21 +29,35 @@ class KinematicEngine final : public ParticleEngine {
     }
     if (progress) progress();
   }
-  void commit() override { committed_position_ = presented_.position; }
-  void rollback() override { presented_.position = committed_position_; }
+  void exchange(std::span<const int> leaving, const ParticleState& entering) override {
+    if (!before_exchange_) before_exchange_ = presented_;
+    exchange_rows(leaving, checked_rows(entering, materials_), presented_);
+  }
+  void commit() override {
+    committed_position_ = presented_.position;
+    before_exchange_.reset();
+  }
+  void rollback() override {
+    if (before_exchange_) presented_ = std::move(*before_exchange_);
+    before_exchange_.reset();
+    presented_.position = committed_position_;
+  }
 
  private:
   [[noreturn]] void refuse(int row, const Vector3& at, int side) const {
     throw NumericsError(
         "particle {} of the kinematic engine would go to ({:.6g}, {:.6g}, {:.6g}) m and leave the "
         "domain "
-        "through {}; lower its velocity, make that direction periodic, or enlarge the box",
+        "through {}; lower its velocity, make that direction periodic, enlarge the box, or let it "
+        "out (particles.outflow)",
         presented_.id[row], at.x(), at.y(), at.z(), side < 0 ? "infinity" : side_name(side));
   }
 
   Domain domain_;
+  int materials_;
   ParticleState presented_;
   std::vector<Vector3> committed_position_;
+  std::optional<ParticleState> before_exchange_;  ///< in a window in which some entered or left
 };
 
 }  // namespace

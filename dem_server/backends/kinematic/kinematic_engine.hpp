@@ -9,7 +9,8 @@
 
 namespace fluxpact {
 
-/// Particles pass through each other and through walls' planes up to a radius; periodic sides wrap.
+/// Particles pass through each other and through walls' planes up to a radius; periodic sides wrap,
+/// and those that let particles out are flown through.
 /// Throws ConfigError for particles that are not sound (see checked_rows). Its `advance` throws
 /// NumericsError that names the particle which leaves the domain; `rollback` presents the committed
 /// state again.

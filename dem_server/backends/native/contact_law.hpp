@@ -1,87 +1,117 @@
-// The contact parameters of each pair of materials, and the longest sub-step they allow.
-// Set up once when the engine is made; the force itself is in contact_force.hpp.
+// The parameters of a contact for each pair of materials: from what a scene gives (stiffness or
+// elasticity, restitution, ...) to the plain numbers that the force of a contact reads. Set up once
+// when the engine is made; the force itself is in contact_force-inl.hpp.
 #pragma once
 
-#include <cmath>
-#include <span>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "dem_server/backends/particle_engine.hpp"
 #include "proto/scene/scene.hpp"
 
 namespace fluxpact {
 
-/// Linear spring-dashpot of one pair of materials (Cundall & Strack, Géotechnique 29, 1979, 47-65).
-struct PairLaw {
-  double normal_stiffness = 0;      ///< [N/m]
-  double tangential_stiffness = 0;  ///< [N/m]
-  double damping_ratio = 0;         ///< share of critical damping that gives the restitution [-]
-  double friction = 0;              ///< [-]
-  bool given = false;
+/// The laws that all contacts of a scene follow; what differs from pair to pair is numbers only.
+struct ContactModel {
+  ContactLaw law = ContactLaw::linear;
+  RollingLaw rolling = RollingLaw::none;
+  CohesionLaw cohesion = CohesionLaw::none;
+  bool friction = false;  ///< some pair has friction or the scene a rolling law: spins are followed
 };
 
-/// |ln e| / sqrt(π² + ln² e): the share of critical damping with which a linear contact rebounds at
-/// e times the speed of approach (separation at zero overlap, attraction at its end kept). 1 for e
-/// = 0.
+/// Numbers of memory that a contact keeps between two steps, zero when the surfaces meet anew, in
+/// this order: 3 of the tangential spring [m] (with friction), 3 of the rolling spring [rad]
+/// (spring_dashpot), 1 that tells if a bridge or an adhesive contact holds (liquid_bridge, jkr).
+int spring_numbers(const ContactModel& model);
+
+/// What the force of a contact reads, one number a column; m* = m_i m_j/(m_i + m_j) and
+/// R* = r_i r_j/(r_i + r_j) belong to the two particles.
+enum class LawColumn {
+  normal,               ///< linear: k_n [N/m]; hertz: 2 E* [Pa]
+  tangential,           ///< linear: k_t [N/m]; hertz: 8 G* [Pa]
+  tangential_softness,  ///< linear: 1/k_t [m/N]
+  damping,  ///< c_n = damping sqrt(S m*), S = 1 (linear, [sqrt(N/m)]) or 2 E* a (hertz, [-])
+  tangential_damping,  ///< c_t / c_n [-]
+  friction,            ///< [-]
+  rolling_friction,    ///< largest torque over force and R* [-]
+  rolling_stiffness,   ///< of the rolling spring over normal stiffness and R*² [-]
+  rolling_damping,     ///< share of critical damping [-]
+  attraction,  ///< sjkr: 2 π times the energy density [J/m³]; liquid_bridge: 4 π γ cos θ [N/m];
+               ///< jkr: (π w / 8 E*)^(1/3) [m^(1/3)]
+  bridge_shape,    ///< liquid_bridge: 2 / V [1/m³]
+  bridge_rupture,  ///< liquid_bridge: distance of the surfaces at which it breaks [m]; 0: dry
+};
+inline constexpr int law_columns = static_cast<int>(LawColumn::bridge_rupture) + 1;
+
+/// One pair of materials.
+struct PairLaw {
+  double column[law_columns] = {};
+  bool given = false;
+
+  double operator[](LawColumn name) const { return column[static_cast<std::size_t>(name)]; }
+  double& operator[](LawColumn name) { return column[static_cast<std::size_t>(name)]; }
+};
+
+/// |ln e| / sqrt(π² + ln² e): the share of critical damping with which a contact rebounds at e
+/// times the speed of approach (separation at zero overlap, attraction at its end kept). Exact for
+/// the linear law, and for Hertz' with a dashpot in proportion to sqrt(S_n) (Antypov & Elliott,
+/// Europhys. Lett. 94, 2011, 50004). 1 for e = 0.
 double damping_ratio(double restitution);
 
-/// Coefficient [kg/s] of the normal dashpot: 2 ζ sqrt(k m_eff), which is γ_n m_eff of other codes.
+/// Coefficient [kg/s] of the normal dashpot of the linear law: 2 ζ sqrt(k m*), which is γ_n m* of
+/// other codes.
 double damping_coefficient(const PairLaw& law, double effective_mass);
-
-/// The laws as the kernel reads them, in its own precision.
-template <class Real>
-struct LawTable {
-  struct Row {
-    Real normal_stiffness, tangential_stiffness, inverse_tangential_stiffness, damping, friction;
-  };
-  std::vector<Row> rows;
-};
 
 /// Laws by two materials, or a material and the walls.
 class ContactLaws {
  public:
-  /// Throws ConfigError for a pair that names an unknown material, stands twice, or has a value
-  /// outside its range.
+  /// Throws ConfigError for a pair that names an unknown material, stands twice, has a value
+  /// outside its range, or lacks one that the laws of the scene need.
   explicit ContactLaws(const ParticleSettings& settings);
 
+  const ContactModel& model() const { return model_; }
   int walls() const { return static_cast<int>(names_.size()) - 1; }  ///< the walls' material index
   int index(int a, int b) const { return a * static_cast<int>(names_.size()) + b; }
-  /// All laws, in the order of `index`.
-  template <class Real>
-  LawTable<Real> table() const {
-    LawTable<Real> table;
-    for (const PairLaw& law : laws_) {
-      table.rows.push_back({static_cast<Real>(law.normal_stiffness),
-                            static_cast<Real>(law.tangential_stiffness),
-                            static_cast<Real>(1 / law.tangential_stiffness),
-                            static_cast<Real>(2 * law.damping_ratio *
-                                              std::sqrt(law.normal_stiffness)),
-                            static_cast<Real>(law.friction)});
-    }
-    return table;
-  }
+  int count() const { return static_cast<int>(laws_.size()); }  ///< of pairs, in both orders
   const PairLaw& operator[](int index) const { return laws_[index]; }
   const std::string& name(int material) const { return names_[material]; }
-  /// True if any contact has friction: only then are tangential springs and spins followed.
-  bool any_friction() const;
+  /// Rayleigh's time [s] of a sphere of this material over r sqrt(ρ) [m sqrt(kg/m³)], hertz only
+  /// (step_limit.hpp).
+  double rayleigh_factor(int material) const { return rayleigh_factors_[material]; }
+  bool any_friction() const { return model_.friction; }
 
  private:
   int find(const std::string& name) const;
+  ContactModel model_;
   std::vector<std::string> names_;  // the materials in the order of the scene's map, then the walls
   std::vector<PairLaw> laws_;
+  std::vector<double> rayleigh_factors_;
 };
 
-/// Longest sub-step [s] for these particles, and the contact that sets it.
-struct StepLimit {
-  double longest = 0;  ///< a tenth of the shortest contact time; infinite without contacts
-  std::string pair;
+/// How far [m] beyond touching surfaces a contact acts: what a list of neighbours adds to its
+/// cutoff, for particles up to `largest_radius` [m]. 0 without liquid bridges and jkr.
+double reach_beyond_contact(const ContactLaws& laws, double largest_radius);
+
+/// All pairs as one table of plain numbers, T = float or double: column by column, in a column the
+/// pairs by ContactLaws::index. Pairs without an entry are zero.
+template <class T>
+struct LawTable {
+  ContactModel model;
+  int pairs = 0;
+  bool one_law =
+      false;    ///< all given pairs are equal, walls included: any index with `given` will do
+  int any = 0;  ///< the index of a given pair
+  std::vector<T> values;
+
+  const T* column(LawColumn name) const {
+    return values.data() + static_cast<std::size_t>(name) * static_cast<std::size_t>(pairs);
+  }
 };
 
-/// A tenth of the shortest contact time π sqrt(m_eff / k) over the pairs that can meet: undamped,
-/// hence never longer than the damped time; with friction also that of the tangential spring of two
-/// rolling spheres, k = 7/2 k_t. Throws ConfigError that names a pair that can meet but has no law.
-StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles, bool walls);
+template <class T>
+LawTable<T> law_table(const ContactLaws& laws);
+extern template LawTable<double> law_table(const ContactLaws&);
+extern template LawTable<float> law_table(const ContactLaws&);
 
 /// Mass of a sphere [kg] from its radius [m] and density [kg/m³].
 double sphere_mass(double radius, double density);

@@ -16,6 +16,9 @@ struct Sources {
   const Resorting& resorting;
   const ContactList<Real>* before;
   std::array<Vector3, 27> shifts;
+  int numbers;   // of the springs of a contact
+  int vectors;   // of these the first, which belong to vectors seen from the holder
+  double reach;  // [m] between surfaces, within which a pair is listed
 
   int law(const ContactList<Real>& list, int i, int other_material) const {
     return scope.laws.index(material_of_row[list.row[i]], other_material);
@@ -80,11 +83,13 @@ Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int 
                       {old_i, old_j, Shift::code(periods[0], periods[1], periods[2])});
 }
 
-template <class Real>
-void carry(const Held<Real>& held, int numbers, int contact, Springs<Real>& springs) {
+template <class Real, bool turning>
+void carry(const Sources<Real, turning>& from, const Held<Real>& held, int contact,
+           Springs<Real>& springs) {
   if (held.springs == nullptr) return;
-  for (int n = 0; n < numbers; ++n) {
-    springs.row(n)[contact] = held.sign * held.springs->row(n)[held.contact];
+  for (int n = 0; n < from.numbers; ++n) {
+    const Real sign = n < from.vectors ? held.sign : Real(1);
+    springs.row(n)[contact] = sign * held.springs->row(n)[held.contact];
   }
 }
 
@@ -93,13 +98,12 @@ void carry(const Held<Real>& held, int numbers, int contact, Springs<Real>& spri
 template <class Real, bool turning>
 void fill_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int first,
                   int base, Springs<Real>& springs) {
-  springs.reset(static_cast<int>(pairs.size()), from.scope.spring_numbers);
-  if (from.before == nullptr || from.scope.spring_numbers == 0) return;
+  springs.reset(static_cast<int>(pairs.size()), from.numbers);
+  if (from.before == nullptr || from.numbers == 0) return;
   for (int contact = 0; contact < springs.contacts; ++contact) {
     const Pair& pair = pairs[contact];
-    const Held<Real> held =
-        former_springs(from, first + pair.mine, base + pair.other, pair.shift);
-    carry(held, from.scope.spring_numbers, contact, springs);
+    const Held<Real> held = former_springs(from, first + pair.mine, base + pair.other, pair.shift);
+    carry(from, held, contact, springs);
   }
 }
 
@@ -113,7 +117,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
   block.image.clear();
   for (int i = first; i < last; ++i) {
     const Body<Real, turning>& a = from.spheres[i];
-    const double reach = a.radius + from.scope.skin;
+    const double reach = a.radius + from.reach;
     const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base) {
       const Vector3& image = from.shifts[shift];
       for (int j = begin; j < end; ++j) {
@@ -143,18 +147,20 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
   fill_springs(from, block.image, first, 0, block.image_springs);
 }
 
-template <class Real>
-void carry_plane_spring(const ContactList<Real>& before, int old, int side, int numbers,
-                        int contact, Springs<Real>& springs) {
+template <class Real, bool turning>
+void carry_plane_spring(const Sources<Real, turning>& from, int place, int side, int contact,
+                        Springs<Real>& springs) {
+  const ContactList<Real>& before = *from.before;
+  const int old = from.resorting.previous[place];
   if (old < 0) return;
   const ContactBlock<Real>& block = before.block[before.blocks.holding(old)];
   const int mine = old - before.blocks.first(before.blocks.holding(old));
   auto held = std::lower_bound(block.planes.begin(), block.planes.end(), mine,
-                               [](const NearPlane& p, int place) { return p.mine < place; });
+                               [](const NearPlane& p, int holder) { return p.mine < holder; });
   for (; held != block.planes.end() && held->mine == mine; ++held) {
     if (held->side != side) continue;
     const int at = static_cast<int>(held - block.planes.begin());
-    carry(Held<Real>{&block.plane_springs, at, 1}, numbers, contact, springs);
+    carry(from, Held<Real>{&block.plane_springs, at, 1}, contact, springs);
   }
 }
 
@@ -171,19 +177,17 @@ void find_planes(const Sources<Real, turning>& from, int index, const ContactLis
       const double inward = side % 2 == 0 ? 1.0 : -1.0;
       const double distance = inward * (body.position[side / 2] - domain.plane(side));
       // The wall stands still, so half a skin is enough.
-      if (!(distance < body.radius + 0.5 * from.scope.skin)) continue;
+      if (!(distance < body.radius + 0.5 * from.scope.skin + from.scope.beyond_contact)) continue;
       const int law = from.law(list, i, from.scope.laws.walls());
       block.planes.push_back({static_cast<std::uint16_t>(i - first),
                               static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(law)});
     }
   }
-  const int numbers = from.scope.spring_numbers;
-  block.plane_springs.reset(static_cast<int>(block.planes.size()), numbers);
-  if (from.before == nullptr || numbers == 0) return;
+  block.plane_springs.reset(static_cast<int>(block.planes.size()), from.numbers);
+  if (from.before == nullptr || from.numbers == 0) return;
   for (int contact = 0; contact < block.plane_springs.contacts; ++contact) {
     const NearPlane& near = block.planes[contact];
-    carry_plane_spring(*from.before, from.resorting.previous[first + near.mine], near.side, numbers,
-                       contact, block.plane_springs);
+    carry_plane_spring(from, first + near.mine, near.side, contact, block.plane_springs);
   }
 }
 
@@ -221,8 +225,21 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                        const std::vector<int>& material, const SizeLevels& levels,
                        const Resorting& resorting, const ContactList<Real>* before,
                        ContactList<Real>& list) {
-  const Sources<Real, turning> from{
-      scope, spheres, material, levels, resorting, before, shift_vectors(scope.domain)};
+  const ContactModel& model = scope.laws.model();
+  const int numbers = spring_numbers(model);
+  // The last number of a bridge or an adhesive contact tells that it holds.
+  const bool flag =
+      model.cohesion == CohesionLaw::liquid_bridge || model.cohesion == CohesionLaw::jkr;
+  const Sources<Real, turning> from{scope,
+                                    spheres,
+                                    material,
+                                    levels,
+                                    resorting,
+                                    before,
+                                    shift_vectors(scope.domain),
+                                    numbers,
+                                    flag ? numbers - 1 : numbers,
+                                    scope.skin + scope.beyond_contact};
   list.block.resize(list.blocks.count());
   mark_places(from, list);
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
@@ -232,9 +249,9 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
   }
 }
 
-#define FLUXPACT_INSTANTIATE(Real, turning)                                                 \
-  template void make_contact_list<Real, turning>(                                           \
-      const ContactScope&, std::span<const Body<Real, turning>>, const std::vector<int>&,   \
+#define FLUXPACT_INSTANTIATE(Real, turning)                                               \
+  template void make_contact_list<Real, turning>(                                         \
+      const ContactScope&, std::span<const Body<Real, turning>>, const std::vector<int>&, \
       const SizeLevels&, const Resorting&, const ContactList<Real>*, ContactList<Real>&);
 FLUXPACT_INSTANTIATE(double, false)
 FLUXPACT_INSTANTIATE(double, true)

@@ -16,10 +16,10 @@ namespace fluxpact {
 
 /// A pair of neighbours, held by one of the two.
 struct Pair {
-  std::int32_t other = 0;     ///< the partner's place; in its block for an inner pair
-  std::uint16_t mine = 0;     ///< place of the holder in its block
-  std::uint8_t shift = 13;    ///< periods to add to the partner's position (Shift)
-  std::uint8_t law = 0;       ///< row of the table of laws
+  std::int32_t other = 0;   ///< the partner's place; in its block for an inner pair
+  std::uint16_t mine = 0;   ///< place of the holder in its block
+  std::uint8_t shift = 13;  ///< periods to add to the partner's position (Shift)
+  std::uint8_t law = 0;     ///< row of the table of laws
 };
 
 /// A particle near one of the plane sides of the domain.
@@ -52,9 +52,9 @@ struct Springs {
 /// The contacts of the particles of one block, each list ascending by the holder.
 ///
 /// An inner pair joins two particles of the block and is held once. A pair of two blocks, or across
-/// a periodic side, is held by both: each computes the force on its own, and since the arithmetic is
-/// that of a mirror image the two forces are opposite to the last bit. So a block needs nothing of
-/// another but positions and velocities.
+/// a periodic side, is held by both: each computes the force on its own, and since the arithmetic
+/// is that of a mirror image the two forces are opposite to the last bit. So a block needs nothing
+/// of another but positions and velocities.
 template <class Real>
 struct ContactBlock {
   std::vector<Pair> inner;
@@ -64,8 +64,8 @@ struct ContactBlock {
   Springs<Real> inner_springs, outer_springs, image_springs, plane_springs;
 };
 
-/// Where a particle was when the list was made: [m] from an origin. Float is enough, since the reach
-/// that is left to a particle allows for its rounding.
+/// Where a particle was when the list was made: [m] from an origin. Float is enough, since the
+/// reach that is left to a particle allows for its rounding.
 struct alignas(16) ListedAt {
   float offset[4];
 };
@@ -75,9 +75,9 @@ template <class Real>
 struct ContactList {
   Blocks blocks;
   std::vector<ContactBlock<Real>> block;
-  std::vector<int> row;  ///< of each place: row of the presented state, which is ascending by id
-  Vector3 origin{0, 0, 0};             ///< [m] of listed_at
-  double reach = 0;                    ///< [m] that a particle may move before the list is remade
+  std::vector<int> row;     ///< of each place: row of the presented state, which is ascending by id
+  Vector3 origin{0, 0, 0};  ///< [m] of listed_at
+  double reach = 0;         ///< [m] that a particle may move before the list is remade
   HugeVector<ListedAt> listed_at;
 };
 
@@ -85,8 +85,8 @@ struct ContactList {
 struct ContactScope {
   const Domain& domain;
   const ContactLaws& laws;
-  double skin = 0;         ///< [m]
-  int spring_numbers = 0;  ///< of each contact; 0 without friction
+  double skin = 0;            ///< [m]
+  double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces
   int threads = 1;
 };
 
@@ -96,9 +96,9 @@ struct Resorting {
   std::vector<std::array<std::int8_t, 3>> periods;  ///< subtracted from its position to wrap it
 };
 
-/// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already. `material`
-/// of each presented row. Springs of pairs that `before` (the list in the previous order, or
-/// nullptr) holds are carried over.
+/// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already.
+/// `material` of each presented row. Springs of pairs that `before` (the list in the previous
+/// order, or nullptr) holds are carried over.
 template <class Real, bool turning>
 void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                        const std::vector<int>& material, const SizeLevels& levels,

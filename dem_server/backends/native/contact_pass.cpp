@@ -4,8 +4,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dem_server/backends/native/contact_pass.cpp"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include "dem_server/backends/native/contact_force-inl.hpp"
@@ -43,50 +43,60 @@ HWY_INLINE auto to_real(hn::Vec<Positions> v) {
   }
 }
 
-/// How the surfaces of a batch stand to each other; lanes without contact hold nothing of use.
+/// How the surfaces of a batch stand to each other; lanes that are not near hold nothing of use.
 template <class Real>
 struct Gap {
   using V = hn::Vec<Lanes<Real>>;
   Lanes3<V> normal;
-  V overlap;
-  hn::Mask<Lanes<Real>> touching;
+  V overlap;                   // [m]; negative where the surfaces are apart
+  hn::Mask<Lanes<Real>> near;  // within the reach of the law
 };
 
-/// From the vector between the centres and the sum of the radii. In float the overlap is
+/// From the vector between the centres and the sum R of the radii. In float the overlap is
 /// (R² - d²)/(R + d) with the numerator in double, since the difference of two lengths would keep
 /// few digits.
 template <class Real>
-HWY_INLINE Gap<Real> gap_between(hn::Vec<Positions> x, hn::Vec<Positions> y,
-                                 hn::Vec<Positions> z, hn::Vec<Positions> radii, int count) {
+HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart, double beyond_contact,
+                                 int count) {
   const Lanes<Real> d;
-  const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+  const auto radii = apart.d;
+  const auto square =
+      hn::MulAdd(apart.a, apart.a, hn::MulAdd(apart.b, apart.b, hn::Mul(apart.c, apart.c)));
   const auto difference = to_real<Real>(hn::MulSub(radii, radii, square));
-  const auto touching = hn::And(hn::Gt(difference, hn::Zero(d)), hn::FirstN(d, count));
-  const auto square_real = to_real<Real>(square);
-  const auto distance = hn::Sqrt(square_real);
+  const auto distance = hn::Sqrt(to_real<Real>(square));
   const auto inverse = hn::Div(hn::Set(d, 1), distance);
-  hn::Vec<Lanes<Real>> overlap;
+  Gap<Real> gap;
   if constexpr (sizeof(Real) == sizeof(double)) {
-    overlap = hn::Sub(radii, distance);
+    gap.overlap = hn::Sub(radii, distance);
   } else {
-    overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
+    gap.overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
   }
-  return {{hn::Mul(to_real<Real>(x), inverse), hn::Mul(to_real<Real>(y), inverse),
-           hn::Mul(to_real<Real>(z), inverse)},
-          overlap, touching};
+  gap.near = hn::FirstN(d, count);
+  if (beyond_contact == 0) {
+    gap.near = hn::And(gap.near, hn::Gt(difference, hn::Zero(d)));
+  } else {
+    const auto reach = hn::Set(d, static_cast<Real>(-beyond_contact));
+    gap.near = hn::And(gap.near, hn::Gt(gap.overlap, reach));
+  }
+  gap.normal = {hn::Mul(to_real<Real>(apart.a), inverse), hn::Mul(to_real<Real>(apart.b), inverse),
+                hn::Mul(to_real<Real>(apart.c), inverse)};
+  return gap;
 }
 
-template <class Real>
-HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table) {
+/// The law of each lane.
+template <class Real, class Contact>
+HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table,
+                                                 const Contact* contacts) {
   const Lanes<Real> d;
-  const auto& law = table.rows.front();
-  return {hn::Set(d, law.normal_stiffness), hn::Set(d, law.tangential_stiffness),
-          hn::Set(d, law.inverse_tangential_stiffness),
-          hn::Set(d, law.damping), hn::Set(d, law.friction)};
+  if (table.one_law) return load_law(d, table, table.any);
+  const hn::RebindToSigned<decltype(d)> integers;
+  alignas(64) hn::TFromD<decltype(integers)> index[width];
+  for (int k = 0; k < width; ++k) index[k] = contacts[k].law;
+  return load_law(d, table, hn::Load(integers, index));
 }
 
-/// Root of the effective mass [kg^0.5]: what holds for all contacts, if that is known, else from the
-/// sum of the inverse masses.
+/// Root of the effective mass [kg^0.5]: what holds for all contacts, if that is known, else from
+/// the sum of the inverse masses.
 template <class Real>
 HWY_INLINE hn::Vec<Lanes<Real>> root_mass(double known, hn::Vec<Lanes<Real>> inverse_mass) {
   const Lanes<Real> d;
@@ -117,33 +127,147 @@ struct LoadRows {
   }
 };
 
-template <class Real, bool turning>
-HWY_INLINE Lanes3<hn::Vec<Lanes<Real>>> load_spring(const Springs<Real>& springs, int at) {
-  const Lanes<Real> d;
-  if constexpr (turning) {
-    return {hn::LoadU(d, springs.row(0) + at), hn::LoadU(d, springs.row(1) + at),
-            hn::LoadU(d, springs.row(2) + at)};
-  } else {
-    return {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+/// The rows of the springs that a model has: which they are.
+struct SpringRows {
+  int rolling = -1;
+  int bridge = -1;
+};
+
+template <bool turning>
+HWY_INLINE SpringRows spring_rows(const ContactModel& model) {
+  SpringRows rows;
+  int next = turning ? 3 : 0;
+  if (model.rolling == RollingLaw::spring_dashpot) {
+    rows.rolling = next;
+    next += 3;
   }
+  if (model.cohesion == CohesionLaw::liquid_bridge || model.cohesion == CohesionLaw::jkr) {
+    rows.bridge = next;
+  }
+  return rows;
+}
+
+template <class Real, bool turning>
+HWY_INLINE SpringLanes<hn::Vec<Lanes<Real>>> load_springs(const ContactModel& model,
+                                                          const Springs<Real>& springs, int at) {
+  const Lanes<Real> d;
+  const auto zero = hn::Zero(d);
+  SpringLanes<hn::Vec<Lanes<Real>>> lanes{{zero, zero, zero}, {zero, zero, zero}, zero};
+  const auto three = [&](int row) HWY_ATTR {
+    return Lanes3<hn::Vec<Lanes<Real>>>{hn::LoadU(d, springs.row(row) + at),
+                                        hn::LoadU(d, springs.row(row + 1) + at),
+                                        hn::LoadU(d, springs.row(row + 2) + at)};
+  };
+  if constexpr (turning) lanes.tangential = three(0);
+  const SpringRows rows = spring_rows<turning>(model);
+  if (rows.rolling >= 0) lanes.rolling = three(rows.rolling);
+  if (rows.bridge >= 0) lanes.bridge = hn::LoadU(d, springs.row(rows.bridge) + at);
+  return lanes;
+}
+
+template <class Real, bool turning>
+HWY_INLINE void store_springs(const ContactModel& model,
+                              const SpringLanes<hn::Vec<Lanes<Real>>>& lanes, int at,
+                              Springs<Real>& springs) {
+  const Lanes<Real> d;
+  const auto three = [&](const Lanes3<hn::Vec<Lanes<Real>>>& value, int row) HWY_ATTR {
+    hn::StoreU(value.x, d, springs.row(row) + at);
+    hn::StoreU(value.y, d, springs.row(row + 1) + at);
+    hn::StoreU(value.z, d, springs.row(row + 2) + at);
+  };
+  if constexpr (turning) three(lanes.tangential, 0);
+  const SpringRows rows = spring_rows<turning>(model);
+  if (rows.rolling >= 0) three(lanes.rolling, rows.rolling);
+  if (rows.bridge >= 0) hn::StoreU(lanes.bridge, d, springs.row(rows.bridge) + at);
+}
+
+/// True if the force depends on the radii apart from the overlap.
+HWY_INLINE bool needs_curvature(const ContactModel& model) {
+  return model.law != ContactLaw::linear || model.rolling != RollingLaw::none ||
+         model.cohesion != CohesionLaw::none;
+}
+
+/// Spin and moment of inertia, which only rolling asks for: of the particle, and of its partner.
+template <class Real>
+struct RollLanes {
+  using V = hn::Vec<Lanes<Real>>;
+  Lanes3<V> spin;     // [rad/s]
+  V inverse_radius;   // [1/m]
+  V inverse_inertia;  // [1/(kg m²)] 1/(m r²)
+};
+
+// Nothing yet: what the model does not ask for stays so, at no cost.
+template <class Real>
+HWY_INLINE TouchLanes<hn::Vec<Lanes<Real>>> no_touch() {
+  const auto zero = hn::Zero(Lanes<Real>());
+  const Lanes3<hn::Vec<Lanes<Real>>> none{zero, zero, zero};
+  return {none, zero, none, none, none, zero, zero, zero};
+}
+template <class Real>
+HWY_INLINE ForceLanes<hn::Vec<Lanes<Real>>> no_force() {
+  const auto zero = hn::Zero(Lanes<Real>());
+  const Lanes3<hn::Vec<Lanes<Real>>> none{zero, zero, zero};
+  return {none, none, none};
+}
+template <class Real>
+HWY_INLINE RollLanes<Real> no_roll() {
+  const auto zero = hn::Zero(Lanes<Real>());
+  return {{zero, zero, zero}, zero, zero};
 }
 
 template <class Real>
-HWY_INLINE void store_spring(const Lanes3<hn::Vec<Lanes<Real>>>& spring, int at,
-                             Springs<Real>& springs) {
+HWY_INLINE RollLanes<Real> gather_roll(const Body<Real, true>* const* bodies) {
   const Lanes<Real> d;
-  hn::StoreU(spring.x, d, springs.row(0) + at);
-  hn::StoreU(spring.y, d, springs.row(1) + at);
-  hn::StoreU(spring.z, d, springs.row(2) + at);
+  const Real* row[width];
+  for (int k = 0; k < width; ++k) row[k] = bodies[k]->radius_spin;
+  const auto w = gather_rows(d, row);
+  for (int k = 0; k < width; ++k) row[k] = bodies[k]->velocity;
+  const auto v = gather_rows(d, row);
+  return {scaled(Lanes3<hn::Vec<Lanes<Real>>>{w.a, w.b, w.c}, w.d), w.d,
+          hn::Mul(v.d, hn::Mul(w.d, w.d))};
+}
+
+/// The vector from partner to holder, and the sum of the radii.
+template <class Real, bool turning, Kind kind>
+HWY_INLINE Quad<hn::Vec<Positions>> apart_of(const BlockPass<Real, turning>& pass,
+                                             const Pair* pairs, const Body<Real, turning>* const* a,
+                                             const Body<Real, turning>* const* b) {
+  const Positions d;
+  const double* first[width];
+  const double* second[width];
+  for (int k = 0; k < width; ++k) {
+    first[k] = a[k]->position;
+    second[k] = b[k]->position;
+  }
+  auto apart = combine_rows(d, first, second, Flip<double>::difference);
+  if constexpr (kind == Kind::image) {
+    for (int k = 0; k < width; ++k) first[k] = pass.shifts[pairs[k].shift];
+    const auto shift = gather_rows(d, first);
+    apart.a = hn::Sub(apart.a, shift.a);
+    apart.b = hn::Sub(apart.b, shift.b);
+    apart.c = hn::Sub(apart.c, shift.c);
+  }
+  return apart;
+}
+
+/// 1/R* from the radii of the holders and the sums.
+template <class Real, bool turning>
+HWY_INLINE hn::Vec<Lanes<Real>> curvature(const Body<Real, turning>* const* a,
+                                          hn::Vec<Positions> sum) {
+  const Positions d;
+  alignas(64) double radius[width];
+  for (int k = 0; k < width; ++k) radius[k] = a[k]->radius;
+  const auto own = hn::Load(d, radius);
+  return to_real<Real>(hn::Div(sum, hn::Mul(own, hn::Sub(sum, own))));
 }
 
 /// One batch of pairs.
 template <class Real, bool turning, Kind kind>
 HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pairs, int count,
                            int at, Springs<Real>& springs) {
-  const Positions dd;
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
+  const ContactModel& model = pass.laws->model;
   const Body<Real, turning>* mine = pass.now + pass.first;
   const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.now;
   const Body<Real, turning>* a[width];
@@ -152,23 +276,12 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
     a[k] = mine + pairs[k].mine;
     b[k] = theirs + pairs[k].other;
   }
-  const double* first[width];
-  const double* second[width];
-  for (int k = 0; k < width; ++k) {
-    first[k] = a[k]->position;
-    second[k] = b[k]->position;
-  }
-  auto apart = combine_rows(dd, first, second, Flip<double>::difference);
-  if constexpr (kind == Kind::image) {
-    for (int k = 0; k < width; ++k) first[k] = pass.shifts[pairs[k].shift];
-    const auto shift = gather_rows(dd, first);
-    apart.a = hn::Sub(apart.a, shift.a);
-    apart.b = hn::Sub(apart.b, shift.b);
-    apart.c = hn::Sub(apart.c, shift.c);
-  }
-  const Gap<Real> gap = gap_between<Real>(apart.a, apart.b, apart.c, apart.d, count);
-  if (hn::AllFalse(d, gap.touching)) {
-    if constexpr (turning) store_spring<Real>({hn::Zero(d), hn::Zero(d), hn::Zero(d)}, at, springs);
+  const auto apart = apart_of<Real, turning, kind>(pass, pairs, a, b);
+  const Gap<Real> gap = gap_between<Real>(apart, pass.beyond_contact, count);
+  const V zero = hn::Zero(d);
+  if (hn::AllFalse(d, gap.near)) {
+    store_springs<Real, turning>(model, {{zero, zero, zero}, {zero, zero, zero}, zero}, at,
+                                 springs);
     return;
   }
   const Real* row_a[width];
@@ -178,11 +291,14 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
     row_b[k] = b[k]->velocity;
   }
   const auto v = combine_rows(d, row_a, row_b, Flip<Real>::difference);
-  TouchLanes<V> touch;
+  auto touch = no_touch<Real>();
   touch.normal = gap.normal;
   touch.overlap = gap.overlap;
   touch.velocity = {v.a, v.b, v.c};
   touch.root_mass = root_mass<Real>(pass.root_masses.pair, v.d);
+  touch.inverse_radius = needs_curvature(model) ? curvature<Real>(a, apart.d) : zero;
+  RollLanes<Real> roll_a = no_roll<Real>();
+  RollLanes<Real> roll_b = no_roll<Real>();
   if constexpr (turning) {
     for (int k = 0; k < width; ++k) {
       row_a[k] = a[k]->radius_spin;
@@ -190,17 +306,30 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
     }
     const auto w = combine_rows(d, row_a, row_b, Flip<Real>::sum);
     touch.radius_spin = {w.a, w.b, w.c};
+    if (model.rolling != RollingLaw::none) {
+      roll_a = gather_roll(a);
+      roll_b = gather_roll(b);
+      touch.spin = plus_scaled(roll_a.spin, hn::Set(d, Real(-1)), roll_b.spin);
+      touch.inverse_inertia = hn::Add(roll_a.inverse_inertia, roll_b.inverse_inertia);
+    }
   }
-  Lanes3<V> spring = load_spring<Real, turning>(springs, at);
-  ForceLanes<V> out;
-  contact_force<turning>(d, law_of(*pass.laws), touch,
-                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, gap.touching,
-                         out);
-  if constexpr (turning) store_spring<Real>(spring, at, springs);
+  SpringLanes<V> spring = load_springs<Real, turning>(model, springs, at);
+  ForceLanes<V> out = no_force<Real>();
+  contact_force<turning>(d, model, law_of(*pass.laws, pairs), touch,
+                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, gap.near, out);
+  store_springs<Real, turning>(model, spring, at, springs);
+  ForceLanes<V> partner = out;
+  if constexpr (turning) {
+    if (model.rolling != RollingLaw::none) {
+      out.lever = plus_scaled(out.lever, roll_a.inverse_radius, out.torque);
+      partner.lever = minus_scaled(partner.lever, roll_b.inverse_radius, out.torque);
+    }
+  }
   const LoadRows<Real, turning> loads(out);
-  for (int k = 0; k < width; ++k) {
-    loads.add(k, pass.sum[pairs[k].mine]);
-    if constexpr (kind == Kind::inner) loads.add_mirrored(k, pass.sum[pairs[k].other]);
+  for (int k = 0; k < width; ++k) loads.add(k, pass.sum[pairs[k].mine]);
+  if constexpr (kind == Kind::inner) {
+    const LoadRows<Real, turning> others(partner);
+    for (int k = 0; k < width; ++k) others.add_mirrored(k, pass.sum[pairs[k].other]);
   }
 }
 
@@ -225,42 +354,76 @@ HWY_INLINE void pass_list(const BlockPass<Real, turning>& pass, const std::vecto
   pass_pairs<Real, turning, kind>(pass, rest, size - whole, whole, springs);
 }
 
+/// A batch of contacts with walls, one a lane, whose normals, overlaps and wall velocities are
+/// known: forces on the particles `place` (in the block).
+template <class Real, bool turning, class Contact>
+HWY_INLINE void pass_walls(const BlockPass<Real, turning>& pass,
+                           TouchLanes<hn::Vec<Lanes<Real>>>& touch,
+                           const Lanes3<hn::Vec<Lanes<Real>>>& wall_velocity,
+                           const Contact* contacts, int count, int at, Springs<Real>& springs) {
+  const Lanes<Real> d;
+  using V = hn::Vec<Lanes<Real>>;
+  const ContactModel& model = pass.laws->model;
+  const Body<Real, turning>* body[width];
+  for (int k = 0; k < width; ++k) body[k] = pass.now + pass.first + contacts[k].mine;
+  const Real* row[width];
+  for (int k = 0; k < width; ++k) row[k] = body[k]->velocity;
+  const auto v = gather_rows(d, row);
+  touch.velocity = {hn::Sub(v.a, wall_velocity.x), hn::Sub(v.b, wall_velocity.y),
+                    hn::Sub(v.c, wall_velocity.z)};
+  touch.root_mass = root_mass<Real>(pass.root_masses.wall, v.d);
+  touch.inverse_radius = hn::Zero(d);
+  if (needs_curvature(model)) {
+    alignas(64) Real radius[width];
+    for (int k = 0; k < width; ++k) radius[k] = static_cast<Real>(body[k]->radius);
+    touch.inverse_radius = hn::Div(hn::Set(d, 1), hn::Load(d, radius));
+  }
+  RollLanes<Real> roll = no_roll<Real>();
+  if constexpr (turning) {
+    for (int k = 0; k < width; ++k) row[k] = body[k]->radius_spin;
+    const auto w = gather_rows(d, row);
+    touch.radius_spin = {w.a, w.b, w.c};
+    if (model.rolling != RollingLaw::none) {
+      roll = gather_roll(body);
+      touch.spin = roll.spin;
+      touch.inverse_inertia = roll.inverse_inertia;
+    }
+  }
+  const auto near =
+      hn::And(hn::FirstN(d, count),
+              hn::Gt(touch.overlap, hn::Set(d, static_cast<Real>(-pass.beyond_contact))));
+  SpringLanes<V> spring = load_springs<Real, turning>(model, springs, at);
+  ForceLanes<V> out = no_force<Real>();
+  contact_force<turning>(d, model, law_of(*pass.laws, contacts), touch,
+                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, near, out);
+  store_springs<Real, turning>(model, spring, at, springs);
+  if constexpr (turning) {
+    if (model.rolling != RollingLaw::none) {
+      out.lever = plus_scaled(out.lever, roll.inverse_radius, out.torque);
+    }
+  }
+  const LoadRows<Real, turning> loads(out);
+  for (int k = 0; k < count; ++k) loads.add(k, pass.sum[contacts[k].mine]);
+}
+
 /// Contacts with the plane sides of the domain.
 template <class Real, bool turning>
 HWY_INLINE void pass_planes(const BlockPass<Real, turning>& pass, const NearPlane* near, int count,
                             int at, Springs<Real>& springs) {
   const Positions dd;
   const Lanes<Real> d;
-  using V = hn::Vec<Lanes<Real>>;
-  const Body<Real, turning>* mine = pass.now + pass.first;
   const double* rows[width];
-  for (int k = 0; k < width; ++k) rows[k] = mine[near[k].mine].position;
+  for (int k = 0; k < width; ++k) rows[k] = pass.now[pass.first + near[k].mine].position;
   const auto x = gather_rows(dd, rows);
   for (int k = 0; k < width; ++k) rows[k] = pass.planes[near[k].side];
   const auto plane = gather_rows(dd, rows);
-  const auto height = hn::MulAdd(
-      x.a, plane.a, hn::MulAdd(x.b, plane.b, hn::MulSub(x.c, plane.c, plane.d)));
-  TouchLanes<V> touch;
+  const auto height =
+      hn::MulAdd(x.a, plane.a, hn::MulAdd(x.b, plane.b, hn::MulSub(x.c, plane.c, plane.d)));
+  auto touch = no_touch<Real>();
   touch.overlap = to_real<Real>(hn::Sub(x.d, height));
-  const auto touching = hn::And(hn::Gt(touch.overlap, hn::Zero(d)), hn::FirstN(d, count));
   touch.normal = {to_real<Real>(plane.a), to_real<Real>(plane.b), to_real<Real>(plane.c)};
-  const Real* real_rows[width];
-  for (int k = 0; k < width; ++k) real_rows[k] = mine[near[k].mine].velocity;
-  const auto v = gather_rows(d, real_rows);
-  touch.velocity = {v.a, v.b, v.c};
-  touch.root_mass = root_mass<Real>(pass.root_masses.wall, v.d);
-  if constexpr (turning) {
-    for (int k = 0; k < width; ++k) real_rows[k] = mine[near[k].mine].radius_spin;
-    const auto w = gather_rows(d, real_rows);
-    touch.radius_spin = {w.a, w.b, w.c};
-  }
-  Lanes3<V> spring = load_spring<Real, turning>(springs, at);
-  ForceLanes<V> out;
-  contact_force<turning>(d, law_of(*pass.laws), touch,
-                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, touching, out);
-  if constexpr (turning) store_spring<Real>(spring, at, springs);
-  const LoadRows<Real, turning> loads(out);
-  for (int k = 0; k < count; ++k) loads.add(k, pass.sum[near[k].mine]);
+  const auto zero = hn::Zero(d);
+  pass_walls<Real, turning>(pass, touch, {zero, zero, zero}, near, count, at, springs);
 }
 
 template <class Real, bool turning>
@@ -289,8 +452,8 @@ HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
 template <class Real, bool turning>
 HWY_INLINE Row<Real> kick(const Body<Real, turning>& now, const Load<Real, turning>& load,
                           const Drive<Real>& drive, Real time_step, Body<Real, turning>& next) {
-  const Row<Real> acceleration = multiply_add(
-      load_row(load.force), same_row(now.inverse_mass), load_row(drive.acceleration));
+  const Row<Real> acceleration =
+      multiply_add(load_row(load.force), same_row(now.inverse_mass), load_row(drive.acceleration));
   const Row<Real> velocity =
       multiply_add(acceleration, same_row(time_step), load_row(now.velocity));
   store_row(velocity, next.velocity);

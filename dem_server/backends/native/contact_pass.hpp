@@ -16,7 +16,8 @@ namespace fluxpact {
 
 enum class Phase { start, drift, settle };
 
-/// Roots of effective masses [kg^0.5] where they are the same for all contacts; 0 where they are not.
+/// Roots of effective masses [kg^0.5] where they are the same for all contacts; 0 where they are
+/// not.
 struct RootMasses {
   double pair = 0;
   double wall = 0;
@@ -39,8 +40,10 @@ struct BlockPass {
   double reach = 0;                ///< [m] from listed_at, beyond which the list may miss a contact
   ContactBlock<Real>* contacts = nullptr;
   const double (*shifts)[4] = nullptr;  ///< [m] displacement of each Shift
-  const double (*planes)[4] = nullptr;  ///< of each side: unit normal into the domain, n·x on it [m]
+  const double (*planes)[4] =
+      nullptr;  ///< of each side: unit normal into the domain, n·x on it [m]
   const LawTable<Real>* laws = nullptr;
+  double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces
   RootMasses root_masses;
 };
 

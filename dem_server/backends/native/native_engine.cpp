@@ -8,6 +8,7 @@
 
 #include "dem_server/backends/native/contact_pass.hpp"
 #include "dem_server/backends/native/soundness.hpp"
+#include "dem_server/backends/native/step_limit.hpp"
 #include "dem_server/backends/particle_rows.hpp"
 #include "proto/base/errors.hpp"
 
@@ -27,6 +28,15 @@ template <class Real>
 struct SavedSprings {
   Springs<Real> inner, outer, image, plane;
 };
+
+/// Pairs of the list name their law by one byte.
+void check_law_indices(const ContactLaws& laws) {
+  if (laws.count() <= 256) return;
+  throw ConfigError(
+      "particles.materials: {} materials; the native engine tells at most 15 apart, so give those "
+      "that behave alike one name",
+      laws.walls());
+}
 
 /// Of particles that all have the same mass.
 RootMasses common_root_masses(const ParticleState& particles) {
@@ -82,7 +92,9 @@ class NativeEngine final : public ParticleEngine {
   int threads_;
   StepLimit limit_;
   RootMasses root_masses_;
-  double skin_ = 0;
+  bool any_wall_;
+  double skin_ = 0;            // [m]
+  double beyond_contact_ = 0;  // [m] that a law reaches beyond touching surfaces
 
   ParticleState presented_;
   std::array<HugeVector<BodyRow>, 3> bodies_;  // committed, and two to go back and forth
@@ -111,7 +123,7 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
                                           ParticleState initial)
     : domain_(particle_domain(scene, mesh)),
       laws_(std::move(laws)),
-      law_table_(laws_.table<Real>()),
+      law_table_(law_table<Real>(laws_)),
       gravity_(scene.scene.gravity),
       presented_(checked_rows(std::move(initial), laws_.walls())) {
   const auto is = [this](SideKind kind) {
@@ -121,8 +133,10 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
   const int asked = scene.particles.numerics.threads;
   threads_ = asked > 0 ? asked : omp_get_max_threads();
   size_up();
-  limit_ = step_limit(laws_, presented_, is(SideKind::wall));
-  check_sub_step(limit_, scene.coupling.window / sub_steps(scene));
+  any_wall_ = is(SideKind::wall);
+  limit_ = step_limit(laws_, presented_, any_wall_);
+  check_time_step(limit_, scene.coupling.window / sub_steps(scene));
+  check_law_indices(laws_);
   tabulate_sides();
   load_rows();
   check(0, 0, 0, 0);
@@ -144,7 +158,8 @@ void NativeEngine<Real, turning>::size_up() {
     mean += 2 * radius / presented_.size();
   }
   skin_ = skin_per_diameter * mean;
-  check_periods(domain_, largest, largest + skin_);
+  beyond_contact_ = reach_beyond_contact(laws_, 0.5 * largest);
+  check_periods(domain_, largest, largest + skin_ + beyond_contact_);
 }
 
 template <class Real, bool turning>
@@ -229,6 +244,7 @@ bool NativeEngine<Real, turning>::sweep(Phase phase, double time_step, double sp
   all.shifts = shifts_.data();
   all.planes = planes_.data();
   all.laws = &law_table_;
+  all.beyond_contact = beyond_contact_;
   all.root_masses = root_masses_;
   bool beyond = false;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(|| : beyond)
@@ -250,7 +266,9 @@ void NativeEngine<Real, turning>::advance(double window, int sub_steps,
                                           const Progress& progress) {
   if (has_candidate_) rollback();
   const double time_step = window / sub_steps;
-  check_sub_step(limit_, time_step);
+  // Contacts by Hertz' law are the shorter the faster they are.
+  if (laws_.model().law == ContactLaw::hertz) limit_ = step_limit(laws_, presented_, any_wall_);
+  check_time_step(limit_, time_step);
   set_drive(force);
   save_springs();
   has_candidate_ = true;
@@ -314,7 +332,7 @@ void NativeEngine<Real, turning>::sort_and_list(int from, int to, bool carry_spr
   wrap(unsorted);
   constexpr int stride = sizeof(BodyRow) / sizeof(double);
   const double* data = count > 0 ? unsorted.front().position : nullptr;
-  levels_.sort(domain_, skin_, {data, stride, count}, {data + 3, stride});
+  levels_.sort(domain_, skin_ + beyond_contact_, {data, stride, count}, {data + 3, stride});
 
   int made = 0;
   while (made == list_ || (has_candidate_ && made == committed_list_)) ++made;
@@ -335,7 +353,7 @@ void NativeEngine<Real, turning>::sort_and_list(int from, int to, bool carry_spr
   std::swap(drive_, sorted_drive_);
   resorting_.periods.swap(periods);
   resorting_.previous = order;
-  const ContactScope scope{domain_, laws_, skin_, turning ? 3 : 0, threads_};
+  const ContactScope scope{domain_, laws_, skin_, beyond_contact_, threads_};
   make_contact_list<Real, turning>(scope, sorted, presented_.material, levels_, resorting_,
                                    carry_springs ? &before : nullptr, list);
   list_ = made;
@@ -355,10 +373,10 @@ void NativeEngine<Real, turning>::check(int bodies, double time_step, int sub_st
   int bad = none;
   const auto motion = [&](int i) {
     const Real* v = rows[i].velocity;
-    return Motion{Eigen::Map<const Vector3>(rows[i].position),
-                  Vector3(static_cast<double>(v[0]), static_cast<double>(v[1]),
-                          static_cast<double>(v[2])),
-                  rows[i].radius};
+    return Motion{
+        Eigen::Map<const Vector3>(rows[i].position),
+        Vector3(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])),
+        rows[i].radius};
   };
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < none; ++i) {
@@ -391,7 +409,7 @@ void NativeEngine<Real, turning>::present(int bodies) {
 
 template <class Real, bool turning>
 void NativeEngine<Real, turning>::save_springs() {
-  if constexpr (!turning) return;
+  if (spring_numbers(laws_.model()) == 0) return;
   const List& list = lists_[list_];
   saved_springs_.resize(list.block.size());
 #pragma omp parallel for num_threads(threads_) schedule(static)
@@ -423,8 +441,8 @@ EngineCounters NativeEngine<Real, turning>::counters() const {
   EngineCounters counters{sub_steps_, rebuilds_, 0};
   for (const ContactBlock<Real>& block : lists_[list_].block) {
     // What two blocks hold is one pair.
-    counters.list_pairs += static_cast<std::int64_t>(
-        block.inner.size() + (block.outer.size() + block.image.size()) / 2);
+    counters.list_pairs += static_cast<std::int64_t>(block.inner.size() +
+                                                     (block.outer.size() + block.image.size()) / 2);
   }
   return counters;
 }

@@ -150,8 +150,7 @@ HWY_INLINE Quad<V> load_rows(D d, const T* const* row) {
     };
     return {two(0), two(1), two(2), two(3)};
   } else {
-    return {hn::LoadU(d, row[0]), hn::LoadU(d, row[1]), hn::LoadU(d, row[2]),
-            hn::LoadU(d, row[3])};
+    return {hn::LoadU(d, row[0]), hn::LoadU(d, row[1]), hn::LoadU(d, row[2]), hn::LoadU(d, row[3])};
   }
 }
 
@@ -166,9 +165,9 @@ HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* seco
     const V sign = hn::Load(d, flip);
     const Quad<V> a = load_rows(d, first);
     const Quad<V> b = load_rows(d, second);
-    return transpose(d, Quad<V>{hn::Add(a.a, hn::Xor(sign, b.a)), hn::Add(a.b, hn::Xor(sign, b.b)),
-                                hn::Add(a.c, hn::Xor(sign, b.c)),
-                                hn::Add(a.d, hn::Xor(sign, b.d))});
+    return transpose(d,
+                     Quad<V>{hn::Add(a.a, hn::Xor(sign, b.a)), hn::Add(a.b, hn::Xor(sign, b.b)),
+                             hn::Add(a.c, hn::Xor(sign, b.c)), hn::Add(a.d, hn::Xor(sign, b.d))});
   }
 #endif
   T sum[4][lanes_of<D>];

@@ -49,16 +49,6 @@ void refuse_force(std::int64_t id, const Vector3& force) {
       id, force.x(), force.y(), force.z());
 }
 
-void check_sub_step(const StepLimit& limit, double time_step) {
-  // A window cut into equal parts may miss the limit by a rounding error.
-  if (time_step <= limit.longest * (1 + 1e-9)) return;
-  throw ConfigError(
-      "particles.time_step: a sub-step of {:.4g} s is longer than a tenth of the contact time of "
-      "{}, {:.4g} s; set it to at most {:.4g} s (recommended: {:.2g} s, a twentieth), or soften "
-      "the contact",
-      time_step, limit.pair, 10 * limit.longest, limit.longest, 0.5 * limit.longest);
-}
-
 void check_periods(const Domain& domain, double largest_diameter, double shortest) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!domain.periodic(axis) || domain.length(axis) >= shortest) continue;

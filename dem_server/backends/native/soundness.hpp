@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dem_server/backends/domain.hpp"
-#include "dem_server/backends/native/contact_law.hpp"
+#include "proto/base/vector.hpp"
 
 namespace fluxpact {
 
@@ -29,9 +29,6 @@ bool is_sound(const Domain& domain, const Motion& motion, double time_step);
 
 /// Throws the NumericsError of a force that is not finite.
 [[noreturn]] void refuse_force(std::int64_t id, const Vector3& force);
-
-/// Throws ConfigError if a sub-step [s] is longer than the limit.
-void check_sub_step(const StepLimit& limit, double time_step);
 
 /// Throws ConfigError if a particle could meet its own image: a period shorter than `shortest` [m].
 void check_periods(const Domain& domain, double largest_diameter, double shortest);

@@ -13,12 +13,12 @@ namespace fluxpact {
 /// behind the position.
 template <class Real, bool turning>
 struct alignas(4 * sizeof(Real)) Body {
-  double position[3];    ///< [m]
-  double radius;         ///< [m]
-  Real velocity[3];      ///< [m/s]
-  Real inverse_mass;     ///< [1/kg]; 0 holds the particle in place
-  Real radius_spin[3];   ///< [m/s] radius times spin
-  Real inverse_radius;   ///< [1/m]
+  double position[3];   ///< [m]
+  double radius;        ///< [m]
+  Real velocity[3];     ///< [m/s]
+  Real inverse_mass;    ///< [1/kg]; 0 holds the particle in place
+  Real radius_spin[3];  ///< [m/s] radius times spin
+  Real inverse_radius;  ///< [1/m]
 };
 
 template <class Real>

@@ -31,8 +31,8 @@ TEST(AuditColumns, each_show_a_member_of_their_own) {
   row.mass.max_cell_residual = 8;
   row.mass.cumulative_drift = 9;
   row.mass.fluid_mass = 10;
-  row.particle_count = 11;
-  row.particle_mass = 12;
+  row.particles.window.count = 11;
+  row.particles.window.mass = 12;
   row.mass.voidage_volume_error = 13;
   row.mass.epsilon_min = 14;
   row.mass.epsilon_max = 15;

@@ -33,7 +33,7 @@ inline AuditRow sample_row(int step) {
   row.mass.max_cell_residual = 1e-16 / 3 * step;
   row.mass.fluid_mass = 4.9e-324;  // the smallest double
   row.momentum.ledger = {-1.0 / 3, 1e300 / 7, 0.1 + 0.2};
-  row.particle_count = 3;
+  row.particles.window.count = 3;
   row.wall_cfd = 0.125;
   return row;
 }

@@ -94,9 +94,10 @@ TEST(Refusal, of_a_period_shorter_than_a_particle) {
   expect_contains(message_of<ConfigError>([&] { make_engine(scene, state); }), "the period in y");
 }
 
-TEST(Lost, particle_through_an_open_side_is_named) {
+TEST(Lost, particle_through_an_open_side_that_lets_none_out_is_named) {
   Scene scene = small_scene();
   give_patch(scene, Side::z_max, BoundaryType::pressure);
+  scene.particles.outflow.emplace();
   const auto engine = make_engine(scene, sphere_at(middle, {0, 0, 1}));
   const ParticleState committed = engine->particles();
   const std::string text = message_of<NumericsError>([&] { run(*engine, 6e-3, 1e-5); });
@@ -106,6 +107,29 @@ TEST(Lost, particle_through_an_open_side_is_named) {
   engine->rollback();
   EXPECT_EQ(engine->particles().position, committed.position);
   EXPECT_NO_THROW(run(*engine, 4e-3, 1e-5));
+}
+
+TEST(Lost, particle_beyond_a_side_that_lets_out_flies_on) {
+  Scene scene = small_scene();
+  give_patch(scene, Side::z_max, BoundaryType::pressure);
+  const auto engine = make_engine(scene, sphere_at(middle, {0, 0, 1}));
+  EXPECT_NO_THROW(run(*engine, 6e-3, 1e-5));
+  const Domain domain = particle_domain(scene, make_box(scene.fluid.mesh));
+  EXPECT_EQ(left_through(domain, engine->particles().position[0]), 5);
+  EXPECT_EQ(left_through(domain, middle), -1);
+}
+
+TEST(Lost, only_named_patches_let_particles_out) {
+  Scene scene = small_scene();
+  give_patch(scene, Side::z_max, BoundaryType::pressure);
+  const std::string patch = scene.fluid.mesh.patches[0].first;
+  const auto lets_out = [&] { return particle_domain(scene, make_box(scene.fluid.mesh)).lets_out; };
+  const std::array<bool, 6> top{false, false, false, false, false, true};
+  EXPECT_EQ(lets_out(), top);
+  scene.particles.outflow = std::vector<std::string>{patch};
+  EXPECT_EQ(lets_out(), top);
+  scene.particles.outflow->clear();
+  EXPECT_EQ(lets_out(), (std::array<bool, 6>{}));
 }
 
 TEST(Lost, inlets_and_partly_open_sides_are_walls) {
@@ -123,6 +147,7 @@ TEST(Lost, inlets_and_partly_open_sides_are_walls) {
 TEST(Lost, nothing_holds_particles_without_walls) {
   Scene scene = small_scene();
   scene.particles.walls = WallSource::none;
+  scene.particles.outflow.emplace();
   const auto engine = make_engine(scene, sphere_at(middle, {0, -1, 0}));
   expect_contains(message_of<NumericsError>([&] { run(*engine, 6e-3, 1e-5); }), "y_min");
 }

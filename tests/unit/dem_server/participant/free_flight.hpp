@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dem_server/backends/particle_engine.hpp"
+#include "dem_server/backends/particle_rows.hpp"
 
 namespace fluxpact {
 
@@ -40,6 +41,9 @@ class FreeFlight : public ParticleEngine {
       }
       candidate_.velocity[i] += window * acceleration;
     }
+  }
+  void exchange(std::span<const int> leaving, const ParticleState& entering) override {
+    exchange_rows(leaving, entering, candidate_);
   }
   void commit() override {
     committed_ = candidate_;

@@ -25,8 +25,8 @@ TEST(SceneErrors, equal_keys) {
 TEST(SceneErrors, missing_required_key_points_at_its_section) {
   expect_error(with("  viscosity: 1.8e-5\n", ""), "s.yaml:11:1: fluid.viscosity: missing; required",
                {"a number in Pa.s, > 0"});
-  expect_error(with(", count: 10", ""), "s.yaml:45:7: particles.insertion[0].count: missing",
-               {"`type: packing`"});
+  expect_error(with(", count: 10", ""), "s.yaml:45:7: particles.insertion[0]: none is given",
+               {"exactly one of `count`, `fraction`, `number_density`"});
   expect_error(with(", rate: 0.001", ""), "s.yaml:24:5: fluid.boundaries.inlet.rate: missing",
                {"`type: mass_flow`"});
 }
@@ -114,7 +114,7 @@ TEST(SceneErrors, keys_without_meaning_for_the_type) {
                "s.yaml:25:30: fluid.boundaries.outlet.slip: ", {"only with `type: wall`"});
   expect_error(
       with("material: steel, diameter: 0.003", "material: steel, diameter: 0.003, count: 5"),
-      "s.yaml:46:57: particles.insertion[1].count: ", {"only with `type: packing`"});
+      "s.yaml:46:57: particles.insertion[1].count: ", {"only with `type: packing | settled`"});
 }
 
 TEST(SceneErrors, conditions_of_a_misspelt_type_are_not_reported_on_top) {
@@ -165,7 +165,7 @@ TEST(SceneErrors, are_all_reported_at_once_in_the_order_of_the_file) {
   text = replaced(text, "end_time: 0.1\n", "end_time: soon\n");
   text = replaced(text, "drag: wen_yu", "drag: wenyu");
   text = replaced(text, "side: z_max", "sied: z_max");
-  text = replaced(text, "law: linear", "law: hertz");
+  text = replaced(text, "law: linear", "law: hooke");
   text = replaced(text, "material: steel", "material: stel");  // found by a check after reading
   const std::string errors = errors_in(text);
   std::vector<std::string> starts{"s.yaml:5:13: scene.end_time",

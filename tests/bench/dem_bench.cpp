@@ -1,104 +1,211 @@
-// Rate of the native particle engine: particle-steps per second of processor time on a settled bed.
+// Cost of the native particle engine: particle-steps a second and bytes a particle, by bed, size
+// and threads.
 //
-//   dem_bench [PARTICLES] [THREADS] [FRICTION] [CSV]
+//   dem_bench --bed FILE.h5|CSV [--box X Y Z] [--fluidised] [--threads 1 2] [--steps N] [--repeats
+//   N] dem_bench --particles 10000 40000 ... [--fluidised] [--threads 1 2] ... dem_bench --bed ...
+//   --fluidised --write FILE.csv        the bed as it starts, for other engines
 //
-// Without a CSV of positions (insertion type `file`) the bed is packed at random and settles first.
-// The window is 20 sub-steps; a line gives the rate of each of five runs of 25 windows.
+// Beds and motion: bench_bed.hpp. Each case runs in a process of its own, so that its peak memory
+// is its own: what the kernel counts at most from just before the engine is made, less what was
+// resident then. 20 steps are not timed; then `repeats` times `steps`, in windows of 20. One line
+// a case, and one on the state at its end (compare_dem.py reads both).
 #include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
+#include <map>
 
 #include "dem_server/backends/native/native_engine.hpp"
-#include "dem_server/insertion/insertion.hpp"
 #include "proto/mesh/box.hpp"
+#include "tests/bench/bench_bed.hpp"
 
 namespace {
 
 using namespace fluxpact;
 
-constexpr double time_step = 5e-6;
-constexpr double diameter = 2e-3;
+struct Options {
+  std::string bed;
+  std::array<double, 3> box{0.25, 0.02, 0.6};
+  bool fluidised = false;
+  std::string write;
+  std::vector<int> particles;
+  std::vector<int> threads{1};
+  std::vector<Precision> precisions{Precision::full};
+  int steps = 480;
+  int repeats = 5;
+};
 
-Scene bed_scene(int count, int threads, double friction, const std::string& csv) {
-  Scene scene;
-  const double side = diameter * std::cbrt(count);
-  scene.coupling.window = 20 * time_step;
-  scene.fluid.mesh.box = {Vector3::Zero(), {side, side, 4 * side}, {2, 2, 2}};
-  if (!csv.empty()) scene.fluid.mesh.box.upper = {0.25, 0.02, 0.6};
-  scene.particles.time_step = time_step;
-  scene.particles.materials["glass"].density = 2250;
-  for (const char* other : {"glass", "walls"}) {
-    PairSettings pair;
-    pair.between = {"glass", other};
-    pair.normal_stiffness = 1000;
-    pair.restitution = 0.9;
-    pair.friction = friction;
-    scene.particles.contact.pairs.push_back(pair);
+/// A line of the kernel's account of this process [B]: VmHWM (peak), VmRSS (now).
+double memory(const std::string& line) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != line + ":") continue;
+    double kilobytes = 0;
+    status >> kilobytes;
+    return 1024 * kilobytes;
   }
-  InsertionSettings bed;
-  bed.material = "glass";
-  bed.diameter = diameter;
-  bed.count = count;
-  bed.within.z = {0, 1.15 * side};
-  if (!csv.empty()) bed.type = InsertionType::file;
-  bed.path = csv;
-  scene.particles.insertion.push_back(bed);
-  scene.particles.numerics.threads = threads;
-  return scene;
+  return 0;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+void forget_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+/// Rates of each repeat [M particle-steps/s].
+struct Rates {
+  std::vector<double> wall;
+  std::vector<double> processor;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-void report(const ParticleState& bed) {
-  constexpr double mass = 9.42478e-6;  // kg
+double best(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+void run_windows(ParticleEngine& engine, int steps) {
+  const std::vector<Vector3> none(engine.particles().id.size(), Vector3::Zero());
+  for (int step = 0; step < steps; step += bench_steps_per_window) {
+    engine.advance(bench_steps_per_window * bench_time_step, bench_steps_per_window, none, {});
+    engine.commit();
+  }
+}
+
+Rates measure(ParticleEngine& engine, const Options& options) {
+  Rates rates;
+  for (int repeat = 0; repeat < options.repeats; ++repeat) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t clock = std::clock();
+    run_windows(engine, options.steps);
+    const double processor = static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    const double work = 1e-6 * options.steps * engine.particles().size();
+    rates.wall.push_back(work / wall.count());
+    rates.processor.push_back(work / processor);
+  }
+  return rates;
+}
+
+void print_state(const BenchBed& bed, const ParticleState& state) {
   double height = 0;
-  double translation = 0;
-  double rotation = 0;
-  for (int i = 0; i < bed.size(); ++i) {
-    height += bed.position[i].z() / bed.size();
-    translation += 0.5 * mass * bed.velocity[i].squaredNorm();
-    rotation += 0.2 * mass * bed.radius[i] * bed.radius[i] * bed.spin[i].squaredNorm();
+  double top = 0;
+  double energy = 0;
+  for (int i = 0; i < state.size(); ++i) {
+    const double mass =
+        4.0 / 3.0 * 3.14159265358979 * std::pow(state.radius[i], 3) * state.density[i];
+    height += state.position[i].z() / state.size();
+    top = std::max(top, state.position[i].z());
+    energy += 0.5 * mass * state.velocity[i].squaredNorm();
   }
-  fmt::print("mean height {:.10g} m, kinetic energy {:.6g} J and {:.6g} J of spin\n", height,
-             translation, rotation);
+  const PairCount pairs = count_pairs(bed, state);
+  fmt::print(
+      "  end: mean height {:.12g} m, top {:.10g} m, kinetic energy {:.8g} J; a particle {:.2f} "
+      "contacts, {:.2f} pairs closer than 0.3 mm\n",
+      height, top, energy, pairs.contacts, pairs.near);
+}
+
+void run_case(const BenchBed& bed, int threads, Precision precision, const Options& options) {
+  const int count = bed.particles.size();
+  const Scene scene = bench_scene(bed, threads, precision);
+  const Mesh mesh = make_box(scene.fluid.mesh);
+  ParticleState start = bed.particles;
+  forget_peak_memory();
+  const double before = memory("VmRSS");
+  const auto engine = make_native_engine(scene, mesh, std::move(start));
+  run_windows(*engine, bench_steps_per_window);
+  const Rates rates = measure(*engine, options);
+  const double bytes = memory("VmHWM") - before;
+  const EngineCounters counters = engine->counters();
+  const double lists = static_cast<double>(std::max<std::int64_t>(1, counters.rebuilds));
+  fmt::print(
+      "{:>8} {:>3} {:>6} | {:>7.2f} {:>7.2f} | {:>7.2f} {:>7.2f} | {:>6.0f} {:>6.0f} | {:>5.0f} "
+      "{:>5.2f}\n",
+      count, threads, precision == Precision::mixed ? "mixed" : "double", median(rates.wall),
+      best(rates.wall), median(rates.processor), best(rates.processor), bytes / count,
+      memory("VmHWM") / count, static_cast<double>(counters.sub_steps) / lists,
+      static_cast<double>(counters.list_pairs) / count);
+  print_state(bed, engine->particles());
+}
+
+int run_in_process_of_its_own(const BenchBed& bed, int threads, Precision precision,
+                              const Options& options) {
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    run_case(bed, threads, precision, options);
+    std::fflush(stdout);
+    std::_Exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status == 0 ? 0 : 1;
+}
+
+int run_all(const Options& options) {
+  fmt::print(
+      "                    | M particle-steps a second of    | bytes a       | steps a list,\n"
+      "                    |      wall       |   processor   | particle:     | pairs a\n"
+      "particles thr  with |  median    best |  median  best | engine, whole | particle in it\n");
+  int failed = 0;
+  const std::vector<int> sizes = options.bed.empty() ? options.particles : std::vector<int>{0};
+  for (const int size : sizes) {
+    BenchBed bed = options.bed.empty() ? settled_bed(size)
+                                       : read_bed(options.bed, Vector3(options.box.data()));
+    if (options.fluidised) fluidise(bed);
+    if (!options.write.empty()) {
+      write_bed(bed, options.write);
+      continue;
+    }
+    for (const int threads : options.threads) {
+      for (const Precision precision : options.precisions) {
+        failed += run_in_process_of_its_own(bed, threads, precision, options);
+      }
+    }
+  }
+  return failed == 0 ? 0 : 1;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::atoi(argv[1]) : 10000;
-  const int threads = argc > 2 ? std::atoi(argv[2]) : 1;
-  const double friction = argc > 3 ? std::atof(argv[3]) : 0.3;
-  const std::string csv = argc > 4 ? argv[4] : "";
-  const Scene scene = bed_scene(count, threads, friction, csv);
-  const Mesh mesh = make_box(scene.fluid.mesh);
-  const auto packing = std::chrono::steady_clock::now();
-  const ParticleState bed = insert_particles(scene, mesh);
-  fmt::print("{} particles inserted in {:.2f} s\n", bed.size(), seconds_since(packing));
-  const auto engine = make_native_engine(scene, mesh, bed);
-  const std::vector<Vector3> none(bed.id.size(), Vector3::Zero());
-  if (csv.empty()) {
-    for (int window = 0; window < 500; ++window) {
-      engine->advance(20 * time_step, 20, none, {});
-      engine->commit();
-    }
+  Options options;
+  CLI::App app("Cost of the native particle engine by bed, size and threads", "dem_bench");
+  auto* bed = app.add_option("--bed", options.bed, "Bed between walls: HDF5 or CSV");
+  app.add_option("--box", options.box, "Upper corner of the bed's box [m]")->needs(bed);
+  app.add_option("--particles", options.particles, "Sizes of beds settled here")->excludes(bed);
+  app.add_flag("--fluidised", options.fluidised,
+               "The bed in motion, about one new list in 50 steps");
+  app.add_option("--write", options.write, "Write the bed as CSV instead of running it");
+  app.add_option("--threads", options.threads, "Numbers of threads");
+  const std::map<std::string, Precision> precisions{{"double", Precision::full},
+                                                    {"mixed", Precision::mixed}};
+  app.add_option("--precision", options.precisions, "double, mixed")
+      ->transform(CLI::CheckedTransformer(precisions));
+  app.add_option("--steps", options.steps, "Timed steps of a repeat, in windows of 20")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--repeats", options.repeats, "Timed repeats")->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
+  if (options.bed.empty() && options.particles.empty()) {
+    options.particles = {10000, 40000, 200000, 500000, 2000000};
   }
-  for (int repeat = 0; repeat < 5; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t clock = std::clock();
-    for (int window = 0; window < 25; ++window) {
-      engine->advance(20 * time_step, 20, none, {});
-      engine->commit();
-    }
-    const double steps = 500.0 * bed.size();
-    const double processor = static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
-    fmt::print("{:.2f} M particle-steps/s of wall time, {:.2f} M per processor second\n",
-               1e-6 * steps / seconds_since(start), 1e-6 * steps / processor);
-    report(engine->particles());
+  // Threads that wait sleep soon, as the coordinator has it for its servers.
+  if (std::getenv("GOMP_SPINCOUNT") == nullptr && std::getenv("OMP_WAIT_POLICY") == nullptr) {
+    setenv("GOMP_SPINCOUNT", "10000", 1);
+    execv("/proc/self/exe", argv);
   }
-  return 0;
+  try {
+    return run_all(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "dem_bench: {}\n", error.what());
+    return 1;
+  }
 }

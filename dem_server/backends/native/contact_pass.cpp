@@ -437,6 +437,38 @@ HWY_INLINE void pass_plane_list(const BlockPass<Real, turning>& pass,
   }
 }
 
+/// Contacts with the surfaces, where they have just been found.
+template <class Real, bool turning>
+HWY_INLINE void pass_touches(const BlockPass<Real, turning>& pass, const SurfaceTouch* touches,
+                             int count, int at, Springs<Real>& springs) {
+  const Positions d;
+  const double* rows[width];
+  for (int k = 0; k < width; ++k) rows[k] = touches[k].normal;
+  const auto normal = gather_rows(d, rows);
+  for (int k = 0; k < width; ++k) rows[k] = touches[k].velocity;
+  const auto velocity = gather_rows(d, rows);
+  alignas(64) double radius[width];
+  for (int k = 0; k < width; ++k) radius[k] = pass.now[pass.first + touches[k].mine].radius;
+  auto touch = no_touch<Real>();
+  touch.overlap = to_real<Real>(hn::Sub(hn::Load(d, radius), normal.d));
+  touch.normal = {to_real<Real>(normal.a), to_real<Real>(normal.b), to_real<Real>(normal.c)};
+  pass_walls<Real, turning>(
+      pass, touch,
+      {to_real<Real>(velocity.a), to_real<Real>(velocity.b), to_real<Real>(velocity.c)}, touches,
+      count, at, springs);
+}
+
+template <class Real, bool turning>
+HWY_INLINE void pass_touch_list(const BlockPass<Real, turning>& pass,
+                                const std::vector<SurfaceTouch>& list, Springs<Real>& springs) {
+  const int size = static_cast<int>(list.size());
+  for (int at = 0; at < size; at += width) {
+    SurfaceTouch batch[width];
+    for (int k = 0; k < width; ++k) batch[k] = list[std::min(at + k, size - 1)];
+    pass_touches(pass, batch, std::min(width, size - at), at, springs);
+  }
+}
+
 template <class Real, bool turning>
 HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
   std::fill(pass.sum, pass.sum + (pass.last - pass.first), Load<Real, turning>{});
@@ -445,6 +477,7 @@ HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
   pass_list<Real, turning, Kind::outer>(pass, contacts.outer, contacts.outer_springs);
   pass_list<Real, turning, Kind::image>(pass, contacts.image, contacts.image_springs);
   pass_plane_list(pass, contacts.planes, contacts.plane_springs);
+  pass_touch_list(pass, contacts.surfaces.touches, contacts.surfaces.springs);
 }
 
 /// The kick of one particle: `next` gets the new velocity and spin. Masses and radii, the last

@@ -17,16 +17,6 @@
 namespace fluxpact {
 namespace {
 
-/// The sub-step knows the sides of the box only.
-void refuse_surfaces(const Walls& walls) {
-  if (walls.empty()) return;
-  throw ConfigError(
-      "particles.surfaces: the native backend does not know walls beside the sides of a box yet "
-      "(here: `{}`); remove the surfaces, use a box mesh, or a fluid without particles "
-      "(interphase.voidage: prescribed)",
-      walls[0].name);
-}
-
 /// List pairs per particle against rebuilds: 0.15 diameters is near the best from a bed at rest to
 /// one that bubbles.
 constexpr double skin_per_diameter = 0.15;
@@ -38,7 +28,8 @@ constexpr int smallest_block = 128;
 
 template <class Real>
 struct SavedSprings {
-  Springs<Real> inner, outer, image, plane;
+  Springs<Real> inner, outer, image, plane, surface;
+  std::vector<SurfaceTouch> touches;
 };
 
 /// What the places of a buffer of bodies hold.
@@ -51,6 +42,7 @@ struct Places {
 struct Sizes {
   StepLimit limit;
   RootMasses root_masses;
+  double largest_radius = 0;  // [m]
   double skin = 0;            // [m]
   double beyond_contact = 0;  // [m] that a law reaches beyond touching surfaces
 };
@@ -102,6 +94,10 @@ class NativeEngine final : public ParticleEngine {
   using LoadRow = Load<Real, turning>;
   using List = ContactList<Real>;
 
+  void name_walls();
+  void place_walls(double time);
+  bool walls_moved_far() const;
+  void check_surfaces() const;
   void size_up();
   BodyRow body_of(int row) const;
   void tabulate_sides();
@@ -116,7 +112,9 @@ class NativeEngine final : public ParticleEngine {
   void check(int bodies, double time_step, int sub_step, int sub_steps) const;
   void present(int bodies);
   void save_springs();
-  int threads_for(const Blocks& blocks) const { return std::clamp(threads_, 1, std::max(1, blocks.count())); }
+  int threads_for(const Blocks& blocks) const {
+    return std::clamp(threads_, 1, std::max(1, blocks.count()));
+  }
 
   Domain domain_;
   ContactLaws laws_;
@@ -126,8 +124,13 @@ class NativeEngine final : public ParticleEngine {
   Vector3 gravity_;
   bool any_periodic_;
   int threads_;
-  std::vector<int> wall_materials_;
-  double time_step_;  // [s] of the scene
+  Walls walls_;
+  std::vector<int> surface_materials_;  // of each surface
+  std::vector<int> wall_materials_;     // of all walls, each once
+  double placed_at_ = 0;                // [s] where the walls stand
+  double time_ = 0;                     // [s] of the committed state
+  double window_ = 0;                   // [s] of the candidate
+  double time_step_;                    // [s] of the scene
   Sizes sizes_;
 
   ParticleState presented_;
@@ -160,6 +163,7 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
       laws_(std::move(laws)),
       law_table_(law_table<Real>(laws_)),
       gravity_(scene.scene.gravity),
+      walls_(make_walls(scene, mesh)),
       presented_(checked_rows(std::move(initial), laws_.walls())) {
   const auto is = [this](SideKind kind) {
     return std::find(domain_.sides.begin(), domain_.sides.end(), kind) != domain_.sides.end();
@@ -168,6 +172,7 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
   const int asked = scene.particles.numerics.threads;
   threads_ = asked > 0 ? asked : omp_get_max_threads();
   if (is(SideKind::wall)) wall_materials_.push_back(laws_.walls());
+  name_walls();
   time_step_ = scene.coupling.window / sub_steps(scene);
   check_law_indices(laws_);
   size_up();
@@ -191,6 +196,43 @@ NativeEngine<Real, turning>::NativeEngine(const Scene& scene, const Mesh& mesh, 
   present(committed_);
 }
 
+/// The materials of the surfaces.
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::name_walls() {
+  for (int surface = 0; surface < walls_.size(); ++surface) {
+    int material = 0;
+    while (material < laws_.walls() && laws_.name(material) != walls_[surface].material) ++material;
+    surface_materials_.push_back(material);
+    if (std::ranges::find(wall_materials_, material) == wall_materials_.end()) {
+      wall_materials_.push_back(material);
+    }
+  }
+}
+
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::place_walls(double time) {
+  placed_at_ = time;
+  if (walls_.moving()) walls_.place(time);
+}
+
+/// True if a surface may have come near a particle that the list does not know of: the list covers
+/// a skin, of which each of the two has half.
+template <class Real, bool turning>
+bool NativeEngine<Real, turning>::walls_moved_far() const {
+  return walls_.moving() &&
+         walls_.travelled(lists_[list_].time, sizes_.largest_radius + sizes_.skin) >
+             0.5 * sizes_.skin;
+}
+
+template <class Real, bool turning>
+void NativeEngine<Real, turning>::check_surfaces() const {
+  const List& list = lists_[list_];
+  for (int b = 0; b < list.blocks.count(); ++b) {
+    const int place = list.block[b].surfaces.lost;
+    if (place >= 0) refuse_lost_in_surface(presented_.id[list.row[list.blocks.first(b) + place]]);
+  }
+}
+
 /// Lengths and limits that follow from the particles.
 template <class Real, bool turning>
 void NativeEngine<Real, turning>::size_up() {
@@ -200,6 +242,7 @@ void NativeEngine<Real, turning>::size_up() {
     largest = std::max(largest, 2 * radius);
     mean += 2 * radius / presented_.size();
   }
+  sizes_.largest_radius = 0.5 * largest;
   sizes_.skin = skin_per_diameter * mean;
   sizes_.beyond_contact = reach_beyond_contact(laws_, 0.5 * largest);
   sizes_.root_masses = common_root_masses(presented_);
@@ -291,6 +334,11 @@ bool NativeEngine<Real, turning>::sweep(Phase phase, double time_step, double sp
     pass.last = blocks.last(b);
     pass.sum = sums_.data() + static_cast<std::ptrdiff_t>(omp_get_thread_num()) * blocks.block_size;
     pass.contacts = &list.block[b];
+    if (!walls_.empty() && phase != Phase::start) {
+      find_touches<Real, turning>(
+          walls_, laws_, surface_materials_, {pass.now + pass.first, pass.now + pass.last},
+          sizes_.beyond_contact, spring_numbers(laws_.model()), pass.contacts->surfaces);
+    }
     const bool one = pass_block(pass);
     beyond = beyond || one;
   }
@@ -317,7 +365,8 @@ void NativeEngine<Real, turning>::advance(double window, int sub_steps,
   candidate_loads_.resize(loads_.size());
   bool beyond = sweep(Phase::start, time_step, 0, committed_, now, loads_);
   for (int step = 1; step <= sub_steps; ++step) {
-    if (beyond) {
+    place_walls(time_ + step * time_step);
+    if (beyond || walls_moved_far()) {
       check(now, time_step, step, sub_steps);
       sort_and_list(now, next, kept_places(), true);
       std::swap(now, next);
@@ -328,8 +377,10 @@ void NativeEngine<Real, turning>::advance(double window, int sub_steps,
     if (progress) progress();
   }
   candidate_ = now;
+  window_ = window;
   sub_steps_ += sub_steps;
   check(candidate_, time_step, sub_steps, sub_steps);
+  check_surfaces();
   present(candidate_);
 }
 
@@ -339,6 +390,7 @@ void NativeEngine<Real, turning>::commit() {
   has_candidate_ = false;
   committed_ = candidate_;
   committed_list_ = list_;
+  time_ += window_;
   std::swap(loads_, candidate_loads_);
   before_exchange_.reset();
 }
@@ -470,10 +522,13 @@ void NativeEngine<Real, turning>::sort_and_list(int from, int to, const Places& 
   }
   std::swap(drive_, sorted_drive_);
   resorting_.periods.swap(periods);
-  const ContactScope scope{domain_, laws_, sizes_.skin, sizes_.beyond_contact, threads_};
+  const ContactScope scope{
+      domain_, walls_, surface_materials_, laws_, sizes_.skin, sizes_.beyond_contact, threads_};
   make_contact_list<Real, turning>(scope, sorted, presented_.material, levels_, resorting_,
                                    carry_springs ? &before : nullptr, list);
+  list.time = placed_at_;
   list_ = made;
+  check_surfaces();
   ++rebuilds_;
 }
 
@@ -526,14 +581,14 @@ void NativeEngine<Real, turning>::present(int bodies) {
 
 template <class Real, bool turning>
 void NativeEngine<Real, turning>::save_springs() {
-  if (spring_numbers(laws_.model()) == 0) return;
+  if (spring_numbers(laws_.model()) == 0 && walls_.empty()) return;
   const List& list = lists_[list_];
   saved_springs_.resize(list.block.size());
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int b = 0; b < list.blocks.count(); ++b) {
     const ContactBlock<Real>& block = list.block[b];
-    saved_springs_[b] = {block.inner_springs, block.outer_springs, block.image_springs,
-                         block.plane_springs};
+    saved_springs_[b] = {block.inner_springs, block.outer_springs,    block.image_springs,
+                         block.plane_springs, block.surfaces.springs, block.surfaces.touches};
   }
 }
 
@@ -553,6 +608,8 @@ void NativeEngine<Real, turning>::rollback() {
     block.outer_springs = saved_springs_[b].outer;
     block.image_springs = saved_springs_[b].image;
     block.plane_springs = saved_springs_[b].plane;
+    block.surfaces.springs = saved_springs_[b].surface;
+    block.surfaces.touches = saved_springs_[b].touches;
   }
   candidate_ = committed_;
   present(committed_);
@@ -585,7 +642,6 @@ std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh
 
 std::unique_ptr<ParticleEngine> make_native_engine(const Scene& scene, const Mesh& mesh,
                                                    ParticleState initial) {
-  if (initial.size() > 0) refuse_surfaces(make_walls(scene, mesh));
   if (scene.particles.numerics.precision == Precision::mixed) {
     return make_engine<float>(scene, mesh, std::move(initial));
   }

@@ -62,14 +62,14 @@ void check_law_indices(const ContactLaws& laws) {
       laws.walls());
 }
 
-/// Of particles that all have the same mass.
+/// Of particles that all have the same mass, and are free.
 RootMasses common_root_masses(const ParticleState& particles) {
   const int count = particles.size();
   const auto mass = [&](int row) {
     return sphere_mass(particles.radius[row], particles.density[row]);
   };
-  for (int row = 1; row < count; ++row) {
-    if (mass(row) != mass(0)) return {};
+  for (int row = 0; row < count; ++row) {
+    if (mass(row) != mass(0) || particles.is_fixed(row)) return {};
   }
   if (count == 0) return {};
   return {std::sqrt(mass(0) / 2), std::sqrt(mass(0))};
@@ -269,7 +269,9 @@ auto NativeEngine<Real, turning>::body_of(int row) const -> BodyRow {
   const double radius = presented_.radius[row];
   BodyRow body{};
   body.radius = radius;
-  body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+  if (!presented_.is_fixed(row)) {
+    body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+  }
   for (int axis = 0; axis < 3; ++axis) {
     body.position[axis] = presented_.position[row][axis];
     body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);
@@ -293,7 +295,8 @@ void NativeEngine<Real, turning>::set_drive(std::span<const Vector3> force) {
   for (int i = 0; i < count; ++i) {
     const int row = lists_[list_].row[i];
     const double inverse_mass = static_cast<double>(bodies_[committed_][i].inverse_mass);
-    const Vector3 drive = gravity_ + force[row] * inverse_mass;
+    const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
+    const Vector3 drive = fall + force[row] * inverse_mass;
     for (int axis = 0; axis < 3; ++axis) {
       drive_[i].acceleration[axis] = static_cast<Real>(drive[axis]);
     }
@@ -610,6 +613,7 @@ void NativeEngine<Real, turning>::rollback() {
     block.plane_springs = saved_springs_[b].plane;
     block.surfaces.springs = saved_springs_[b].surface;
     block.surfaces.touches = saved_springs_[b].touches;
+    block.surfaces.lost = -1;
   }
   candidate_ = committed_;
   present(committed_);

@@ -585,7 +585,9 @@ std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh
 
 std::unique_ptr<ParticleEngine> make_native_engine(const Scene& scene, const Mesh& mesh,
                                                    ParticleState initial) {
-  if (initial.size() > 0) refuse_surfaces(make_walls(scene, mesh));
+  if (initial.size() > 0 || !scene.particles.inflow.empty()) {
+    refuse_surfaces(make_walls(scene, mesh));
+  }
   if (scene.particles.numerics.precision == Precision::mixed) {
     return make_engine<float>(scene, mesh, std::move(initial));
   }

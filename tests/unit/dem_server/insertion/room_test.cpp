@@ -168,27 +168,27 @@ TEST(InsertionInRoom, packing_of_two_sizes_lies_in_the_pipe_each_by_its_own_radi
 }
 
 TEST(InsertionInRoom, large_spheres_start_where_they_fit) {
-  // A cone with its tip below: the large spheres have room in the upper third alone.
+  // A tube in the drum: small ones fit into it, but no push gets a large one out through its wall.
   Scene scene = drum_scene();
-  SurfaceSettings cone;
-  cone.type = SurfaceType::cone;
-  cone.direction = {0, 0, 1};
-  cone.radius = 0.5e-3;
-  cone.end_radius = 10e-3;
-  cone.length = 0.03;
-  cone.side = SurfaceSide::inside;
-  scene.particles.surfaces = {{"cone", cone}};
-  scene.particles.insertion.push_back(entry(InsertionType::packing, 0, 12));
-  scene.particles.insertion.back().sizes = two_sizes(1e-3, 9e-3);
-  scene.particles.insertion.back().sizes->table = {{1e-3, 11}, {9e-3, 1}};
+  SurfaceSettings tube = scene.particles.surfaces.front().second;
+  tube.radius = 4e-3;
+  tube.side = SurfaceSide::both;
+  scene.particles.surfaces.emplace_back("tube", tube);
+  scene.particles.insertion.push_back(entry(InsertionType::packing, 0, 60));
+  scene.particles.insertion.back().sizes = two_sizes(1e-3, 5e-3);
   const ParticleState state = insert_particles(scene, make_box(scene.fluid.mesh));
-  ASSERT_EQ(state.size(), 12);
-  const double slope = std::atan2(9.5e-3, 0.03);
+  ASSERT_EQ(state.size(), 60);
+  int small_in_tube = 0;
   for (int i = 0; i < state.size(); ++i) {
-    const Vector3& x = state.position[i];
-    const double across = 0.5e-3 + 9.5e-3 / 0.03 * x.z() - std::hypot(x.x(), x.y());
-    EXPECT_GE(across * std::cos(slope), state.radius[i] * (1 - 2e-3)) << i;
+    const double from_axis = std::hypot(state.position[i].x(), state.position[i].y());
+    if (state.radius[i] < 1e-3) {
+      small_in_tube += from_axis < 4e-3 ? 1 : 0;
+    } else {
+      // `packing_overlap` of the diameter.
+      EXPECT_GE(from_axis, 4e-3 + (0.5 - 1e-3) * 5e-3) << i;
+    }
   }
+  EXPECT_GT(small_in_tube, 0);
 }
 
 TEST(InsertionInRoom, sphere_that_sticks_into_a_wall_is_relaxed_out_of_it) {

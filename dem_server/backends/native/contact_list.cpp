@@ -191,6 +191,76 @@ void find_planes(const Sources<Real, turning>& from, int index, const ContactLis
   }
 }
 
+/// Touches and springs that a particle had, in the new list.
+template <class Real, bool turning>
+void carry_touches(const Sources<Real, turning>& from, int old, int mine,
+                   SurfaceContacts<Real>& contacts) {
+  const ContactList<Real>& before = *from.before;
+  const int holder = before.blocks.holding(old);
+  const SurfaceContacts<Real>& held = before.block[holder].surfaces;
+  const TouchRange range = touches_of(held.touches, old - before.blocks.first(holder));
+  for (int k = range.first; k < range.last; ++k) {
+    contacts.touches.push_back(held.touches[k]);
+    contacts.touches.back().mine = static_cast<std::uint16_t>(mine);
+  }
+}
+
+/// The elements that a particle had near it in the list before.
+template <class Real, bool turning>
+std::span<const int> former_elements(const Sources<Real, turning>& from, int place) {
+  if (from.before == nullptr || from.resorting.previous[place] < 0) return {};
+  const int old = from.resorting.previous[place];
+  const int holder = from.before->blocks.holding(old);
+  const SurfaceContacts<Real>& held = from.before->block[holder].surfaces;
+  const int mine = old - from.before->blocks.first(holder);
+  const auto at = std::lower_bound(held.near.begin(), held.near.end(), mine);
+  if (at == held.near.end() || *at != mine) return {};
+  const auto k = at - held.near.begin();
+  return std::span(held.elements)
+      .subspan(held.first_element[k], held.first_element[k + 1] - held.first_element[k]);
+}
+
+template <class Real, bool turning>
+void find_surfaces(const Sources<Real, turning>& from, int index, const ContactList<Real>& list,
+                   SurfaceContacts<Real>& contacts) {
+  contacts.near.clear();
+  contacts.material.clear();
+  contacts.first_element.assign(1, 0);
+  contacts.elements.clear();
+  contacts.touches.clear();
+  contacts.lost = -1;
+  if (from.scope.walls.empty()) return;
+  const int first = list.blocks.first(index);
+  for (int i = first; i < list.blocks.last(index); ++i) {
+    const Body<Real, turning>& body = from.spheres[i];
+    const std::size_t had = contacts.elements.size();
+    const bool held =
+        from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), body.radius + from.reach,
+                                former_elements(from, i), contacts.elements);
+    if (!held) contacts.lost = i - first;
+    if (contacts.elements.size() == had) continue;
+    contacts.near.push_back(static_cast<std::uint16_t>(i - first));
+    contacts.material.push_back(static_cast<std::uint8_t>(from.material_of_row[list.row[i]]));
+    contacts.first_element.push_back(static_cast<int>(contacts.elements.size()));
+    if (from.before != nullptr && from.resorting.previous[i] >= 0) {
+      carry_touches(from, from.resorting.previous[i], i - first, contacts);
+    }
+  }
+  contacts.springs.reset(static_cast<int>(contacts.touches.size()), from.numbers);
+  if (from.numbers == 0) return;
+  int contact = 0;
+  for (const std::uint16_t mine : contacts.near) {
+    const int old = from.before != nullptr ? from.resorting.previous[first + mine] : -1;
+    if (old < 0) continue;
+    const int holder = from.before->blocks.holding(old);
+    const SurfaceContacts<Real>& held = from.before->block[holder].surfaces;
+    const TouchRange range = touches_of(held.touches, old - from.before->blocks.first(holder));
+    for (int k = range.first; k < range.last; ++k) {
+      carry(from, Held<Real>{&held.springs, k, 1}, contact++, contacts.springs);
+    }
+  }
+}
+
 /// Where the particles are now, and how far they may go.
 template <class Real, bool turning>
 void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
@@ -246,6 +316,7 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
   for (int b = 0; b < list.blocks.count(); ++b) {
     find_pairs(from, b, list, list.block[b]);
     find_planes(from, b, list, list.block[b]);
+    find_surfaces(from, b, list, list.block[b].surfaces);
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include "dem_server/backends/native/contact_law.hpp"
 #include "dem_server/backends/native/spheres.hpp"
+#include "dem_server/backends/native/springs.hpp"
+#include "dem_server/backends/native/surface_contacts.hpp"
 #include "dem_server/backends/size_levels.hpp"
 
 namespace fluxpact {
@@ -29,26 +31,6 @@ struct NearPlane {
   std::uint8_t law = 0;
 };
 
-/// Springs of the contacts of one list, one row of numbers for each component: x, y, z of the
-/// elongation [m], seen from the holder, then what the law wants beside. Rows have room for whole
-/// vector registers.
-template <class Real>
-struct Springs {
-  static constexpr int widest = 16;  // contacts in one register
-  HugeVector<Real> values;
-  int contacts = 0;
-  std::ptrdiff_t stride = 0;  // from one row to the next
-
-  /// All zero, for so many contacts with so many numbers each.
-  void reset(int count, int numbers) {
-    contacts = count;
-    stride = (count + widest - 1) / widest * widest;
-    values.assign(static_cast<std::size_t>(stride) * numbers, Real(0));
-  }
-  Real* row(int number) { return values.data() + number * stride; }
-  const Real* row(int number) const { return values.data() + number * stride; }
-};
-
 /// The contacts of the particles of one block, each list ascending by the holder.
 ///
 /// An inner pair joins two particles of the block and is held once. A pair of two blocks, or across
@@ -62,6 +44,7 @@ struct ContactBlock {
   std::vector<Pair> image;  ///< across a periodic side
   std::vector<NearPlane> planes;
   Springs<Real> inner_springs, outer_springs, image_springs, plane_springs;
+  SurfaceContacts<Real> surfaces;
 };
 
 /// Where a particle was when the list was made: [m] from an origin. Float is enough, since the
@@ -76,6 +59,7 @@ struct ContactList {
   Blocks blocks;
   std::vector<ContactBlock<Real>> block;
   std::vector<int> row;     ///< of each place: row of the presented state, which is ascending by id
+  double time = 0;          ///< [s] when it was made
   Vector3 origin{0, 0, 0};  ///< [m] of listed_at
   double reach = 0;         ///< [m] that a particle may move before the list is remade
   HugeVector<ListedAt> listed_at;
@@ -84,6 +68,8 @@ struct ContactList {
 /// What stays the same for all lists of an engine.
 struct ContactScope {
   const Domain& domain;
+  const Walls& walls;
+  std::span<const int> surface_materials;
   const ContactLaws& laws;
   double skin = 0;            ///< [m]
   double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces

@@ -1,5 +1,6 @@
 #include "dem_server/backends/native/soundness.hpp"
 
+#include "dem_server/walls/walls.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -40,6 +41,14 @@ void refuse(const Domain& domain, std::int64_t id, const Motion& motion, const S
       "{} moves by {:.3g} of its radius in one sub-step, so it could pass through others; set "
       "particles.time_step to at most {:.3g} s",
       who, v.norm() * sub_step.time_step / motion.radius, motion.radius / v.norm());
+}
+
+void refuse_lost_in_surface(std::int64_t id) {
+  throw NumericsError(
+      "particle {}: pressed through a surface of particles.surfaces or the mesh, or wedged into "
+      "more than {} places of it; raise the normal_stiffness of its pair with the surface, or "
+      "shorten particles.time_step",
+      id, most_wall_touches);
 }
 
 void refuse_force(std::int64_t id, const Vector3& force) {

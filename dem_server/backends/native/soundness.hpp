@@ -27,6 +27,9 @@ bool is_sound(const Domain& domain, const Motion& motion, double time_step);
 [[noreturn]] void refuse(const Domain& domain, std::int64_t id, const Motion& motion,
                          const SubStep& sub_step);
 
+/// Throws the NumericsError of a particle that a surface does not hold any more.
+[[noreturn]] void refuse_lost_in_surface(std::int64_t id);
+
 /// Throws the NumericsError of a force that is not finite.
 [[noreturn]] void refuse_force(std::int64_t id, const Vector3& force);
 

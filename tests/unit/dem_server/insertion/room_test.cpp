@@ -171,21 +171,22 @@ TEST(InsertionInRoom, large_spheres_start_where_they_fit) {
   // A tube in the drum: small ones fit into it, but no push gets a large one out through its wall.
   Scene scene = drum_scene();
   SurfaceSettings tube = scene.particles.surfaces.front().second;
-  tube.radius = 4e-3;
+  tube.radius = 2.4e-3;
   tube.side = SurfaceSide::both;
   scene.particles.surfaces.emplace_back("tube", tube);
-  scene.particles.insertion.push_back(entry(InsertionType::packing, 0, 60));
+  scene.particles.insertion.push_back(entry(InsertionType::packing, 0, 200));
   scene.particles.insertion.back().sizes = two_sizes(1e-3, 5e-3);
+  scene.particles.insertion.back().sizes->table = {{1e-3, 9}, {5e-3, 1}};
   const ParticleState state = insert_particles(scene, make_box(scene.fluid.mesh));
-  ASSERT_EQ(state.size(), 60);
+  ASSERT_EQ(state.size(), 200);
   int small_in_tube = 0;
   for (int i = 0; i < state.size(); ++i) {
     const double from_axis = std::hypot(state.position[i].x(), state.position[i].y());
     if (state.radius[i] < 1e-3) {
-      small_in_tube += from_axis < 4e-3 ? 1 : 0;
+      small_in_tube += from_axis < 2.4e-3 ? 1 : 0;
     } else {
       // `packing_overlap` of the diameter.
-      EXPECT_GE(from_axis, 4e-3 + (0.5 - 1e-3) * 5e-3) << i;
+      EXPECT_GE(from_axis, 2.4e-3 + (0.5 - 1e-3) * 5e-3) << i;
     }
   }
   EXPECT_GT(small_in_tube, 0);

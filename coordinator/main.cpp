@@ -9,6 +9,7 @@
 #include "coordinator/scene/load_mesh.hpp"
 #include "coordinator/scene/load_scene.hpp"
 #include "coordinator/scene/mesh_report.hpp"
+#include "coordinator/scene/particle_report.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
 #include "proto/scene/read_scene.hpp"
@@ -23,7 +24,7 @@ void check_scene(const RunOptions& options) {
   fmt::print("{}: fine; {} cells, {} windows of {} s, {} sub-steps in each\n",
              options.scene.string(), mesh.cells(), windows(scene), scene.coupling.window,
              sub_steps(scene));
-  fmt::print("{}", mesh_report(scene, mesh));
+  fmt::print("{}{}", particle_report(scene, mesh), mesh_report(scene, mesh));
 }
 
 int dispatch(int argc, char** argv) {

@@ -23,7 +23,7 @@ constexpr double dense_fraction = 0.66;
 /// Overlap at the bottom of the bed while it is soft, of the diameter.
 constexpr double soft_overlap = 0.02;
 constexpr int sub_steps_of_window = 20;
-constexpr int windows_of_log = 250;
+constexpr int windows_of_log = 50;
 
 /// A bed on its way down.
 struct Settling {

@@ -9,6 +9,7 @@
 #include "coordinator/scene/load_mesh.hpp"
 #include "coordinator/scene/load_scene.hpp"
 #include "coordinator/scene/mesh_report.hpp"
+#include "coordinator/scene/particle_report.hpp"
 #include "coordinator/scene/surface_report.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
@@ -25,8 +26,9 @@ void check_scene(const RunOptions& options) {
   fmt::print("{}: fine; {} cells, {} windows of {} s, {} sub-steps in each\n",
              options.scene.string(), mesh.cells(), windows(scene), scene.coupling.window,
              sub_steps(scene));
-  fmt::print("{}", mesh_report(scene, mesh));
-  for (const std::string& line : surfaces) fmt::print("{}\n", line);
+  fmt::print("{}{}", particle_report(scene, mesh), mesh_report(scene, mesh));
+  for (const std::string& line : surfaces) fmt::print("{}
+", line);
 }
 
 int dispatch(int argc, char** argv) {

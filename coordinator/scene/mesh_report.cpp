@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proto/mesh/mesh_quality.hpp"
+#include "proto/scene/size_law.hpp"
 
 namespace fluxpact {
 namespace {
@@ -16,7 +17,10 @@ namespace {
 double largest_diameter(const Scene& scene) {
   double largest = 0;
   for (const InsertionSettings& entry : scene.particles.insertion) {
-    largest = std::max(largest, entry.diameter);
+    largest = std::max(largest, SizeLaw(entry.diameter, entry.sizes).largest());
+  }
+  for (const InflowSettings& inflow : scene.particles.inflow) {
+    largest = std::max(largest, SizeLaw(inflow.diameter, inflow.sizes).largest());
   }
   return largest;
 }

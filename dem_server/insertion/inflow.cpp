@@ -33,7 +33,7 @@ void clear(ParticleState& state) {
 }  // namespace
 
 Inflow::Inflow(const Scene& scene, const Mesh& mesh, std::int64_t first_id)
-    : domain_(particle_domain(scene, mesh)) {
+    : domain_(particle_domain(scene, mesh)), room_(scene, mesh) {
   const std::vector<std::string> names = material_names(scene.particles);
   for (std::size_t i = 0; i < scene.particles.inflow.size(); ++i) {
     const InflowSettings& settings = scene.particles.inflow[i];
@@ -185,7 +185,7 @@ Vector3 Inflow::propose(const Source& source, Given& given) const {
          (radius + third * gate->depth) * gate->inward;
 }
 
-/// Centre in the domain, and no wall touched.
+/// Centre in the domain and the vessel, and no wall touched.
 bool Inflow::is_inside(const Vector3& place, double radius) const {
   // A sphere that just touches the patch behind it, up to rounding.
   const double least = radius * (1 - 1e-9);
@@ -195,14 +195,14 @@ bool Inflow::is_inside(const Vector3& place, double radius) const {
     const double room = inward * (place[side / 2] - domain_.plane(side));
     if (room < (domain_.sides.at(side) == SideKind::wall ? least : 0.0)) return false;
   }
-  return true;
+  return room_.unbounded() || room_.fits(place, radius);
 }
 
 bool Inflow::find_place(const Source& source, Given& given, Vector3& place) const {
   for (int attempt = 0; attempt < most_tries; ++attempt) {
     place = propose(source, given);
     const double radius = 0.5 * given.diameter;
-    if (is_inside(place, radius) && near_.is_free(place, radius)) return true;
+    if (near_.is_free(place, radius) && is_inside(place, radius)) return true;
   }
   return false;
 }
@@ -211,6 +211,7 @@ void Inflow::advance(double time, const ParticleState& present, std::span<const 
                      ParticleState& entering) {
   candidate_ = committed_;
   clear(entering);
+  room_.place(time);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
     Given& given = candidate_.given[i];

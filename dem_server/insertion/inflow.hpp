@@ -13,6 +13,7 @@
 #include "dem_server/backends/particle_engine.hpp"
 #include "dem_server/insertion/near_spheres.hpp"
 #include "dem_server/insertion/random.hpp"
+#include "dem_server/walls/room.hpp"
 #include "proto/base/compensated_sum.hpp"
 #include "proto/scene/size_law.hpp"
 
@@ -25,8 +26,8 @@ class Inflow {
   Inflow(const Scene& scene, const Mesh& mesh, std::int64_t first_id);
 
   /// Those due at `time` [s] that find room beside the rows of `present` that are not `leaving`
-  /// (ascending), without touching any, or a wall. `entering` is overwritten. Candidate until
-  /// commit.
+  /// (ascending), without touching any, or a wall where it is at that time. `entering` is
+  /// overwritten. Candidate until commit.
   void advance(double time, const ParticleState& present, std::span<const int> leaving,
                ParticleState& entering);
   void commit() { committed_ = candidate_; }
@@ -77,6 +78,7 @@ class Inflow {
   bool is_inside(const Vector3& place, double radius) const;
 
   Domain domain_;
+  Room room_;
   std::vector<Source> sources_;
   State committed_;
   State candidate_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "dem_server/insertion/push_apart.hpp"
 #include "dem_server/insertion/random.hpp"
@@ -45,26 +46,64 @@ std::vector<Vector3> scatter_evenly(const Vector3& low, const Vector3& space, st
   return centres;
 }
 
-/// `count` places evenly spread over the part of the space where a sphere fits; none if there is
-/// next to no such part.
-std::vector<Vector3> scatter_in_room(const Room& room, const Vector3& low, const Vector3& space,
-                                     std::int64_t count, double radius, UniformRandom& random) {
-  constexpr double most_tries = 1e8;
-  std::vector<Vector3> fitting;
-  double tries = static_cast<double>(count);
-  while (tries < most_tries) {
-    fitting = scatter_evenly(low, space, static_cast<std::int64_t>(tries), random);
-    std::erase_if(fitting, [&](const Vector3& place) { return !room.fits(place, radius); });
-    const auto found = static_cast<double>(fitting.size());
-    if (found >= static_cast<double>(count)) break;
-    if (found == 0 && tries > 1e5) return {};
-    tries *= found > 0 ? std::max(1.3, 1.04 * static_cast<double>(count) / found) : 4.0;
+/// A place in a room, and the largest sphere that is clear of the walls there.
+struct Opening {
+  Vector3 place;
+  double radius = 0;  // [m]
+  bool taken = false;
+
+  bool suits(double diameter) const { return !taken && radius >= 0.5 * diameter * (1 - 1e-9); }
+};
+
+/// An opening for each sphere, spread evenly over them all; the largest spheres choose first, so
+/// that all find one if there is a way. Nothing if not.
+std::vector<Vector3> choose(std::vector<Opening>& openings, std::span<const double> diameters) {
+  const auto found = static_cast<std::int64_t>(openings.size());
+  const auto count = static_cast<std::int64_t>(diameters.size());
+  std::vector<std::int64_t> order(diameters.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int64_t a, std::int64_t b) { return diameters[a] > diameters[b]; });
+  std::vector<Vector3> places(diameters.size());
+  for (const std::int64_t sphere : order) {
+    std::int64_t at = sphere * found / count;
+    std::int64_t looked = 0;
+    for (; looked < found && !openings[at].suits(diameters[sphere]); ++looked) {
+      at = (at + 1) % found;
+    }
+    if (looked == found) return {};
+    openings[at].taken = true;
+    places[sphere] = openings[at].place;
   }
-  const auto found = static_cast<std::int64_t>(fitting.size());
-  if (found < count) return {};
-  std::vector<Vector3> centres;
-  for (std::int64_t s = 0; s < count; ++s) centres.push_back(fitting[s * found / count]);
-  return centres;
+  return places;
+}
+
+/// A place for each sphere, evenly spread over the part of the space where it is clear of the
+/// walls; none if there is next to no such part. The space is cut finer until there are enough.
+std::vector<Vector3> scatter_in_room(const Room& room, const Vector3& low, const Vector3& space,
+                                     std::span<const double> diameters, UniformRandom& random) {
+  constexpr double most_tries = 1e8;
+  const auto count = static_cast<double>(diameters.size());
+  const auto [smallest, largest] = std::minmax_element(diameters.begin(), diameters.end());
+  double tries = count;
+  while (tries < most_tries) {
+    std::vector<Opening> openings;
+    bool any_for_largest = false;
+    for (const Vector3& place :
+         scatter_evenly(low, space, static_cast<std::int64_t>(tries), random)) {
+      const Opening opening{place, room.clearance(place)};
+      if (opening.suits(*smallest)) openings.push_back(opening);
+      any_for_largest = any_for_largest || opening.suits(*largest);
+    }
+    const auto found = static_cast<double>(openings.size());
+    if (found >= count) {
+      std::vector<Vector3> places = choose(openings, diameters);
+      if (!places.empty()) return places;
+    }
+    if (!any_for_largest && tries > 1e5) return {};
+    tries *= found > 0 ? std::max(1.3, 1.04 * count / found) : 4.0;
+  }
+  return {};
 }
 
 /// One random place in each of about as many equal cells as there are spheres; nothing if the walls
@@ -82,7 +121,7 @@ std::vector<Vector3> scatter(const PackingBox& box, std::span<const double> diam
   }
   UniformRandom random(seed);
   if (box.room == nullptr) return scatter_evenly(low, space, count, random);
-  return scatter_in_room(*box.room, low, space, count, 0.5 * smallest, random);
+  return scatter_in_room(*box.room, low, space, diameters, random);
 }
 
 bool has_room(const PackingBox& box, double diameter) {

@@ -125,7 +125,16 @@ void list_pairs(Relaxation& state) {
   }
 }
 
-/// Push each overlapping pair apart. Returns the largest overlap met [smaller diameters].
+/// Push each sphere off the walls of the room, also where no other pushes it.
+void push_off_walls(Relaxation& state) {
+  if (state.wall_first.empty()) return;
+  for (int i = 0; i < static_cast<int>(state.position.size()); ++i) {
+    if (state.wall_first[i] < state.wall_first[i + 1]) keep_inside(state, i);
+  }
+}
+
+/// Push each overlapping pair apart, and all off the walls. Returns the largest overlap met
+/// [smaller diameters].
 double sweep(Relaxation& state) {
   // Aimed beyond contact, so that an overlap that is small enough is reached in finite time.
   const double margin = 0.5 * state.allowed;
@@ -152,6 +161,7 @@ double sweep(Relaxation& state) {
     keep_inside(state, pair.a);
     keep_inside(state, pair.b);
   }
+  push_off_walls(state);
   return largest;
 }
 

@@ -23,7 +23,7 @@ constexpr double dense_fraction = 0.66;
 /// Overlap at the bottom of the bed while it is soft, of the diameter.
 constexpr double soft_overlap = 0.02;
 constexpr int sub_steps_of_window = 20;
-constexpr int windows_of_log = 250;
+constexpr int windows_of_log = 50;
 
 /// A bed on its way down.
 struct Settling {
@@ -88,6 +88,7 @@ Scene scene_of(const Settling& bed, const std::string& material) {
   }
   scene.fluid.boundaries = {{"walls", {}}};
   scene.particles.walls = WallSource::from_mesh;
+  for (auto& [name, surface] : scene.particles.surfaces) surface.motion = {};
   scene.particles.inflow.clear();
   scene.particles.insertion = {InsertionSettings{}};
   scene.particles.insertion.front().material = material;
@@ -228,6 +229,13 @@ std::vector<ListedParticle> settled_bed(const Scene& scene, const std::string& e
                                         const Domain& domain, const Progress& alive) {
   Settling bed{entry, scene};
   find_up(bed);
+  if (box.room != nullptr && box.room->bounded_by_mesh()) {
+    throw ConfigError(
+        "{}: a bed settles between the sides of a box and particles.surfaces, but the mesh is no "
+        "box; let a loose packing settle in a run of its own and read it from its results.h5 "
+        "(type: file)",
+        entry);
+  }
   bed.density = scene.particles.materials.at(settings.material).density;
   const double area = box.volume() / (box.upper[bed.up] - box.lower[bed.up]);
   const std::vector<double> diameters =

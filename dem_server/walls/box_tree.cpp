@@ -5,7 +5,7 @@
 
 namespace fluxpact {
 
-BoxTree::BoxTree(std::span<const Bounds> boxes) {
+BoxTree::BoxTree(std::span<const Extent> boxes) {
   const int count = static_cast<int>(boxes.size());
   if (count == 0) return;
   items_.resize(boxes.size());
@@ -14,10 +14,10 @@ BoxTree::BoxTree(std::span<const Bounds> boxes) {
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int first = nodes_[n].first;
     const int size = nodes_[n].count;
-    Bounds around = boxes[items_[first]];
-    Bounds centres{around.lower + around.upper, around.lower + around.upper};  // twice the centre
+    Extent around = boxes[items_[first]];
+    Extent centres{around.lower + around.upper, around.lower + around.upper};  // twice the centre
     for (int k = first + 1; k < first + size; ++k) {
-      const Bounds& box = boxes[items_[k]];
+      const Extent& box = boxes[items_[k]];
       around = {around.lower.cwiseMin(box.lower), around.upper.cwiseMax(box.upper)};
       const Vector3 centre = box.lower + box.upper;
       centres = {centres.lower.cwiseMin(centre), centres.upper.cwiseMax(centre)};

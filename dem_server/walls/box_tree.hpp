@@ -9,7 +9,7 @@
 
 namespace fluxpact {
 
-struct Bounds {
+struct Extent {
   Vector3 lower = Vector3::Zero();  ///< [m]
   Vector3 upper = Vector3::Zero();  ///< [m]
 
@@ -23,7 +23,7 @@ class BoxTree {
  public:
   BoxTree() = default;
   /// Over the boxes 0 ... size - 1.
-  explicit BoxTree(std::span<const Bounds> boxes);
+  explicit BoxTree(std::span<const Extent> boxes);
 
   /// Calls visit(index) for each box whose distance from `x` squared is at most `reach_square`
   /// [m²], in an order that depends on the tree alone. The visit may lower `reach_square` on the
@@ -33,7 +33,7 @@ class BoxTree {
 
  private:
   struct Node {
-    Bounds bounds;
+    Extent bounds;
     int first = 0;  ///< leaf: into items_; else: its left child (the right one follows it)
     int count = 0;  ///< of a leaf; 0: not a leaf
   };

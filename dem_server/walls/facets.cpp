@@ -308,7 +308,7 @@ void add_facets(const TriangleSurface& surface, int index, const std::string& so
   for (std::size_t t = 0; t < made.surface.triangles.size(); ++t) {
     const std::array<int, 3>& corners = made.surface.triangles[t];
     const Vector3& a = made.surface.points[corners[0]];
-    Facet facet{
+    WallFacet facet{
         a,          {made.surface.points[corners[1]] - a, made.surface.points[corners[2]] - a},
         normals[t], edges.of[t],
         corners,    first_shell + made.shell[t],

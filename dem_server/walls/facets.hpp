@@ -10,7 +10,7 @@
 
 namespace fluxpact {
 
-struct Facet {
+struct WallFacet {
   Vector3 corner;               ///< [m] corner 0
   std::array<Vector3, 2> side;  ///< [m] from corner 0 to 1 and to 2
   Vector3 normal;               ///< unit; all of a shell point to the same side of it
@@ -38,7 +38,7 @@ struct Shell {
 
 /// The facets of all surfaces.
 struct Facets {
-  std::vector<Facet> facets;
+  std::vector<WallFacet> facets;
   std::vector<FacetJoint> edges;
   std::vector<FacetJoint> vertices;
   /// Unit vectors: from an edge into each of its facets, from a vertex along each of its edges, of
@@ -68,7 +68,7 @@ struct FacetPoint {
 };
 
 /// Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
-inline FacetPoint nearest_on(const Facet& facet, const Vector3& x) {
+inline FacetPoint nearest_on(const WallFacet& facet, const Vector3& x) {
   const Vector3& ab = facet.side[0];
   const Vector3& ac = facet.side[1];
   const Vector3 ap = x - facet.corner;
@@ -100,7 +100,7 @@ inline FacetPoint nearest_on(const Facet& facet, const Vector3& x) {
 }
 
 /// What the nearest point of a facet belongs to, if that is no face.
-inline const FacetJoint& joint_of(const Facets& facets, const Facet& facet,
+inline const FacetJoint& joint_of(const Facets& facets, const WallFacet& facet,
                                   const FacetPoint& nearest) {
   const auto corner = static_cast<std::size_t>(nearest.corner);
   return nearest.part == FacetPart::edge ? facets.edges[facet.edges[corner]]

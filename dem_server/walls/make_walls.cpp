@@ -66,9 +66,9 @@ class WallsMaker {
     WallSurface& surface = start(name, settings);
     const std::size_t first = walls_.facets_.facets.size();
     add_facets(triangles, walls_.size() - 1, source, walls_.facets_, features_);
-    std::vector<Bounds> boxes;
+    std::vector<Extent> boxes;
     for (std::size_t f = first; f < walls_.facets_.facets.size(); ++f) {
-      const Facet& facet = walls_.facets_.facets[f];
+      const WallFacet& facet = walls_.facets_.facets[f];
       const Vector3 b = facet.corner + facet.side[0];
       const Vector3 c = facet.corner + facet.side[1];
       boxes.push_back({facet.corner.cwiseMin(b).cwiseMin(c), facet.corner.cwiseMax(b).cwiseMax(c)});

@@ -29,8 +29,8 @@ Room::Room(const Scene& scene, const Mesh& mesh) : walls_(make_walls(scene, mesh
   std::int32_t features = 0;
   add_facets(with_periodic_images(triangles_of(mesh, faces), domain), 0, "fluid.mesh", boundary_,
              features);
-  std::vector<Bounds> boxes;
-  for (const Facet& facet : boundary_.facets) {
+  std::vector<Extent> boxes;
+  for (const WallFacet& facet : boundary_.facets) {
     const Vector3 b = facet.corner + facet.side[0];
     const Vector3 c = facet.corner + facet.side[1];
     boxes.push_back({facet.corner.cwiseMin(b).cwiseMin(c), facet.corner.cwiseMax(b).cwiseMax(c)});

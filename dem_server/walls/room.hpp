@@ -5,15 +5,23 @@
 
 namespace fluxpact {
 
-/// The room that the walls of a scene leave at time 0 within its Domain, whose own sides it does
-/// not look at.
+/// The room that the walls of a scene leave within its Domain, whose own sides it does not look at:
+/// at time 0 when made.
 class Room {
  public:
   /// Throws ConfigError as make_walls does.
   Room(const Scene& scene, const Mesh& mesh);
 
+  /// Move the walls to where they are at `time` [s].
+  void place(double time) {
+    if (walls_.moving()) walls_.place(time);
+  }
+
   /// True if nothing but the domain bounds it.
   bool unbounded() const { return walls_.empty() && boundary_.facets.empty(); }
+
+  /// True if the mesh is no box.
+  bool bounded_by_mesh() const { return !boundary_.facets.empty(); }
 
   /// Distance of a place from the nearest wall [m]; negative behind a plane, on the wrong side of a
   /// surface with a `side`, and outside the mesh. Infinite if there is no wall. A cylinder or cone

@@ -11,12 +11,12 @@ namespace fluxpact {
 /// The point of some facets that is nearest to a place.
 struct NearestFacet {
   double square = std::numeric_limits<double>::infinity();  ///< of the distance [m²]
-  const Facet* facet = nullptr;
+  const WallFacet* facet = nullptr;
   FacetPoint point;
 };
 
 /// Make `nearest` that of a further facet if it is nearer.
-inline void consider(const Facet& facet, const Vector3& x, NearestFacet& nearest) {
+inline void consider(const WallFacet& facet, const Vector3& x, NearestFacet& nearest) {
   const FacetPoint point = nearest_on(facet, x);
   const double square = (x - point.point).squaredNorm();
   if (square < nearest.square) nearest = {square, &facet, point};

@@ -239,7 +239,7 @@ bool is_nearest(const Facets& facets, const FacetJoint& joint, const Vector3& fr
   return true;
 }
 
-void touch_facet(const Facets& facets, const Facet& facet, Held side, const Vector3& x,
+void touch_facet(const Facets& facets, const WallFacet& facet, Held side, const Vector3& x,
                  double radius, TouchSieve& sieve) {
   const FacetPoint nearest = nearest_on(facet, x);
   if (nearest.part == FacetPart::face) {

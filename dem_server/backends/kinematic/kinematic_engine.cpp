@@ -75,7 +75,7 @@ void refuse_other_than_box(const Scene& scene, const Mesh& mesh) {
 
 std::unique_ptr<ParticleEngine> make_kinematic_engine(const Scene& scene, const Mesh& mesh,
                                                       ParticleState initial) {
-  if (initial.size() > 0) refuse_other_than_box(scene, mesh);
+  if (initial.size() > 0 || !scene.particles.inflow.empty()) refuse_other_than_box(scene, mesh);
   return std::make_unique<KinematicEngine>(scene, mesh, std::move(initial));
 }
 

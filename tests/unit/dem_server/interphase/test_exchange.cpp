@@ -107,6 +107,38 @@ TEST_F(Exchange, gives_the_particles_what_the_fluid_loses) {
   }
 }
 
+TEST_F(Exchange, remembers_the_window_before_by_row_while_particles_come_and_go) {
+  const double window = 0.02;
+  make_offer(window);
+  window_forces(settings, offer, fluid(), particles, bulk, 1, window, forces);
+  // Half of the load was carried, by each in its own measure.
+  std::vector<Vector3> before;
+  for (int i = 0; i < particles.size(); ++i) {
+    const Vector3 load = settings.gravity + forces.force[i] / bulk.mass[i];
+    before.push_back(particles.velocity[i] - window * load * (0.3 + 0.005 * i));
+  }
+  make_offer(window);
+  const Offer free_flight = offer;
+  make_offer(window, {before, window, &forces, {}});
+  const Offer all = offer;
+  // The same particles, but the window before is known in other rows, and of one not at all.
+  std::vector<int> row_before;
+  std::vector<Vector3> shuffled(before.size());
+  WindowForces moved = forces;
+  for (int i = 0; i < particles.size(); ++i) {
+    row_before.push_back((i + 7) % particles.size());
+    shuffled[row_before[i]] = before[i];
+    moved.force[row_before[i]] = forces.force[i];
+    moved.drag_impulse[row_before[i]] = forces.drag_impulse[i];
+  }
+  row_before[42] = -1;
+  make_offer(window, {shuffled, window, &moved, row_before});
+  for (int i = 0; i < particles.size(); ++i) {
+    EXPECT_EQ(offer.velocity[i], (i == 42 ? free_flight : all).velocity[i]) << i;
+    EXPECT_NE(all.velocity[i], free_flight.velocity[i]);
+  }
+}
+
 TEST_F(Exchange, deposits_every_impulse_once) {
   make_offer(0.01);
   window_forces(settings, offer, fluid(), particles, bulk, 2, 0.01, forces);

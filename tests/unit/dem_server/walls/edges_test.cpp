@@ -170,7 +170,7 @@ TEST(WallEdges, side_of_a_spike_is_right_around_its_sharp_edges_and_its_tip) {
     const Vector3 x =
         a + uniform(random) * (b - a) + 0.01 * uniform(random) * random_direction(random);
     double least = -1;  // distance from the planes of its faces: negative inside
-    for (const Facet& facet : facets.facets) {
+    for (const WallFacet& facet : facets.facets) {
       least = std::max(least, facet.normal.dot(x - facet.corner));
     }
     if (std::abs(least) < 1e-9) continue;  // on it, as far as rounding knows

@@ -167,7 +167,7 @@ inline TriangleSurface ball(double radius, int levels) {
 }
 
 /// A cylinder about the z axis from -half to half with n facets of m pairs of triangles, pointing
-/// out, open at its ends. Facet k lies about the angle 2 π (k + 1/2)/n.
+/// out, open at its ends. WallFacet k lies about the angle 2 π (k + 1/2)/n.
 inline TriangleSurface tube_of_facets(double radius, double half, int n, int m) {
   TriangleSurface surface;
   for (int k = 0; k < n; ++k) {

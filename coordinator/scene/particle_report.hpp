@@ -1,0 +1,16 @@
+// What the user is told about the particles of a scene before anything runs.
+#pragma once
+
+#include <string>
+
+#include "proto/mesh/mesh.hpp"
+#include "proto/scene/scene.hpp"
+
+namespace fluxpact {
+
+/// One line for each entry of particles.insertion and particles.inflow: count, mass and sizes as
+/// the scene gives them; what only packing, settling or reading can tell is said to be so. Empty
+/// without particles.
+std::string particle_report(const Scene& scene, const Mesh& mesh);
+
+}  // namespace fluxpact

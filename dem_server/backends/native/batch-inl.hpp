@@ -1,0 +1,228 @@
+// A batch of contacts in the vector registers: how surfaces stand to each other, which law and
+// springs each lane has, and the way of the forces to the particles. For the loops over pairs and
+// walls.
+#if defined(FLUXPACT_BATCH_INL_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FLUXPACT_BATCH_INL_
+#undef FLUXPACT_BATCH_INL_
+#else
+#define FLUXPACT_BATCH_INL_
+#endif
+
+#include "dem_server/backends/native/contact_force-inl.hpp"
+#include "dem_server/backends/native/contact_pass.hpp"
+#include "dem_server/backends/native/row_lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fluxpact::HWY_NAMESPACE {
+
+/// Contacts go through the registers in batches of as many as a register holds positions.
+using Positions = hn::CappedTag<double, 8>;
+inline constexpr int width = lanes_of<Positions>;
+template <class Real>
+using Lanes = hn::Rebind<Real, Positions>;
+
+/// Signs for combine_rows: the first three numbers are differences, the fourth is a sum.
+template <class Real>
+struct Flip {
+  alignas(64) static constexpr Real difference[8] = {-Real(0), -Real(0), -Real(0), 0,
+                                                     -Real(0), -Real(0), -Real(0), 0};
+  alignas(64) static constexpr Real sum[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+};
+
+template <class Real>
+HWY_INLINE auto to_real(hn::Vec<Positions> v) {
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    return v;
+  } else {
+    return hn::DemoteTo(Lanes<Real>(), v);
+  }
+}
+
+/// How the surfaces of a batch stand to each other; lanes that are not near hold nothing of use.
+template <class Real>
+struct Gap {
+  using V = hn::Vec<Lanes<Real>>;
+  Lanes3<V> normal;
+  V overlap;                   // [m]; negative where the surfaces are apart
+  hn::Mask<Lanes<Real>> near;  // within the reach of the law
+};
+
+/// From the vector between the centres and the sum R of the radii. In float the overlap is
+/// (R² - d²)/(R + d) with the numerator in double, since the difference of two lengths would keep
+/// few digits.
+template <class Real>
+HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart, double beyond_contact,
+                                 int count) {
+  const Lanes<Real> d;
+  const auto radii = apart.d;
+  const auto square =
+      hn::MulAdd(apart.a, apart.a, hn::MulAdd(apart.b, apart.b, hn::Mul(apart.c, apart.c)));
+  const auto difference = to_real<Real>(hn::MulSub(radii, radii, square));
+  const auto distance = hn::Sqrt(to_real<Real>(square));
+  const auto inverse = hn::Div(hn::Set(d, 1), distance);
+  Gap<Real> gap;
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    gap.overlap = hn::Sub(radii, distance);
+  } else {
+    gap.overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
+  }
+  gap.near = hn::FirstN(d, count);
+  if (beyond_contact == 0) {
+    gap.near = hn::And(gap.near, hn::Gt(difference, hn::Zero(d)));
+  } else {
+    const auto reach = hn::Set(d, static_cast<Real>(-beyond_contact));
+    gap.near = hn::And(gap.near, hn::Gt(gap.overlap, reach));
+  }
+  gap.normal = {hn::Mul(to_real<Real>(apart.a), inverse), hn::Mul(to_real<Real>(apart.b), inverse),
+                hn::Mul(to_real<Real>(apart.c), inverse)};
+  return gap;
+}
+
+/// The law of each lane.
+template <class Real, class Contact>
+HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table,
+                                                 const Contact* contacts) {
+  const Lanes<Real> d;
+  if (table.one_law) return load_law(d, table, table.any);
+  const hn::RebindToSigned<decltype(d)> integers;
+  alignas(64) hn::TFromD<decltype(integers)> index[width];
+  for (int k = 0; k < width; ++k) index[k] = contacts[k].law;
+  return load_law(d, table, hn::Load(integers, index));
+}
+
+/// Root of the effective mass [kg^0.5]: what holds for all contacts, if that is known, else from
+/// the sum of the inverse masses.
+template <class Real>
+HWY_INLINE hn::Vec<Lanes<Real>> root_mass(double known, hn::Vec<Lanes<Real>> inverse_mass) {
+  const Lanes<Real> d;
+  if (known > 0) return hn::Set(d, static_cast<Real>(known));
+  return hn::Sqrt(hn::Div(hn::Set(d, 1), inverse_mass));
+}
+
+/// Loads of a batch, one row of `Load` a lane.
+template <class Real, bool turning>
+struct LoadRows {
+  static constexpr int numbers = turning ? 8 : 4;
+  alignas(64) Real row[width][numbers];
+
+  HWY_INLINE explicit LoadRows(const ForceLanes<hn::Vec<Lanes<Real>>>& from) {
+    const Lanes<Real> d;
+    store_rows<numbers>(d, from.force.x, from.force.y, from.force.z, &row[0][0]);
+    if constexpr (turning) {
+      store_rows<numbers>(d, from.lever.x, from.lever.y, from.lever.z, &row[0][4]);
+    }
+  }
+  HWY_INLINE void add(int lane, Load<Real, turning>& to) const {
+    add_row<numbers, false>(row[lane], to.force);
+  }
+  /// What the partner gets: the opposite force, but an equal lever force, since the arm points the
+  /// other way as well.
+  HWY_INLINE void add_mirrored(int lane, Load<Real, turning>& to) const {
+    add_row<numbers, true>(row[lane], to.force);
+  }
+};
+
+/// The rows of the springs that a model has: which they are.
+struct SpringRows {
+  int rolling = -1;
+  int bridge = -1;
+};
+
+template <bool turning>
+HWY_INLINE SpringRows spring_rows(const ContactModel& model) {
+  SpringRows rows;
+  int next = turning ? 3 : 0;
+  if (model.rolling == RollingLaw::spring_dashpot) {
+    rows.rolling = next;
+    next += 3;
+  }
+  if (model.cohesion == CohesionLaw::liquid_bridge || model.cohesion == CohesionLaw::jkr) {
+    rows.bridge = next;
+  }
+  return rows;
+}
+
+template <class Real, bool turning>
+HWY_INLINE SpringLanes<hn::Vec<Lanes<Real>>> load_springs(const ContactModel& model,
+                                                          const Springs<Real>& springs, int at) {
+  const Lanes<Real> d;
+  const auto zero = hn::Zero(d);
+  SpringLanes<hn::Vec<Lanes<Real>>> lanes{{zero, zero, zero}, {zero, zero, zero}, zero};
+  const auto three = [&](int row) HWY_ATTR {
+    return Lanes3<hn::Vec<Lanes<Real>>>{hn::LoadU(d, springs.row(row) + at),
+                                        hn::LoadU(d, springs.row(row + 1) + at),
+                                        hn::LoadU(d, springs.row(row + 2) + at)};
+  };
+  if constexpr (turning) lanes.tangential = three(0);
+  const SpringRows rows = spring_rows<turning>(model);
+  if (rows.rolling >= 0) lanes.rolling = three(rows.rolling);
+  if (rows.bridge >= 0) lanes.bridge = hn::LoadU(d, springs.row(rows.bridge) + at);
+  return lanes;
+}
+
+template <class Real, bool turning>
+HWY_INLINE void store_springs(const ContactModel& model,
+                              const SpringLanes<hn::Vec<Lanes<Real>>>& lanes, int at,
+                              Springs<Real>& springs) {
+  const Lanes<Real> d;
+  const auto three = [&](const Lanes3<hn::Vec<Lanes<Real>>>& value, int row) HWY_ATTR {
+    hn::StoreU(value.x, d, springs.row(row) + at);
+    hn::StoreU(value.y, d, springs.row(row + 1) + at);
+    hn::StoreU(value.z, d, springs.row(row + 2) + at);
+  };
+  if constexpr (turning) three(lanes.tangential, 0);
+  const SpringRows rows = spring_rows<turning>(model);
+  if (rows.rolling >= 0) three(lanes.rolling, rows.rolling);
+  if (rows.bridge >= 0) hn::StoreU(lanes.bridge, d, springs.row(rows.bridge) + at);
+}
+
+/// True if the force depends on the radii apart from the overlap.
+HWY_INLINE bool needs_curvature(const ContactModel& model) {
+  return model.law != ContactLaw::linear || model.rolling != RollingLaw::none ||
+         model.cohesion != CohesionLaw::none;
+}
+
+/// Spin and moment of inertia, which only rolling asks for: of the particle, and of its partner.
+template <class Real>
+struct RollLanes {
+  using V = hn::Vec<Lanes<Real>>;
+  Lanes3<V> spin;     // [rad/s]
+  V inverse_radius;   // [1/m]
+  V inverse_inertia;  // [1/(kg m²)] 1/(m r²)
+};
+
+// Nothing yet: what the model does not ask for stays so, at no cost.
+template <class Real>
+HWY_INLINE TouchLanes<hn::Vec<Lanes<Real>>> no_touch() {
+  const auto zero = hn::Zero(Lanes<Real>());
+  const Lanes3<hn::Vec<Lanes<Real>>> none{zero, zero, zero};
+  return {none, zero, none, none, none, zero, zero, zero};
+}
+template <class Real>
+HWY_INLINE ForceLanes<hn::Vec<Lanes<Real>>> no_force() {
+  const auto zero = hn::Zero(Lanes<Real>());
+  const Lanes3<hn::Vec<Lanes<Real>>> none{zero, zero, zero};
+  return {none, none, none};
+}
+template <class Real>
+HWY_INLINE RollLanes<Real> no_roll() {
+  const auto zero = hn::Zero(Lanes<Real>());
+  return {{zero, zero, zero}, zero, zero};
+}
+
+template <class Real>
+HWY_INLINE RollLanes<Real> gather_roll(const Body<Real, true>* const* bodies) {
+  const Lanes<Real> d;
+  const Real* row[width];
+  for (int k = 0; k < width; ++k) row[k] = bodies[k]->radius_spin;
+  const auto w = gather_rows(d, row);
+  for (int k = 0; k < width; ++k) row[k] = bodies[k]->velocity;
+  const auto v = gather_rows(d, row);
+  return {scaled(Lanes3<hn::Vec<Lanes<Real>>>{w.a, w.b, w.c}, w.d), w.d,
+          hn::Mul(v.d, hn::Mul(w.d, w.d))};
+}
+
+}  // namespace fluxpact::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

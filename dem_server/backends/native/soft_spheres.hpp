@@ -1,0 +1,134 @@
+// The native engine: its state and what it does with it. Soft spheres of one precision, with or
+// without spins; the parts stand in soft_spheres_{setup,run,lists,exchange}-inl.hpp.
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "dem_server/backends/native/contact_pass.hpp"
+#include "dem_server/backends/native/soundness.hpp"
+#include "dem_server/backends/native/step_limit.hpp"
+#include "dem_server/backends/particle_rows.hpp"
+#include "proto/base/errors.hpp"
+
+namespace fluxpact {
+
+template <class Real>
+struct SavedSprings {
+  Springs<Real> inner, outer, image, plane, surface;
+  std::vector<SurfaceTouch> touches;
+};
+
+/// What the places of a buffer of bodies hold.
+struct Places {
+  std::vector<int> row;       // of the presented state
+  std::vector<int> previous;  // the place in the list in use, -1: not in it
+};
+
+/// Lengths and limits that follow from the particles.
+struct Sizes {
+  StepLimit limit;
+  RootMasses root_masses;
+  double largest_radius = 0;  // [m]
+  double skin = 0;            // [m]
+  double beyond_contact = 0;  // [m] that a law reaches beyond touching surfaces
+};
+
+/// Of a window in which particles entered or left: what rollback brings back.
+struct BeforeExchange {
+  ParticleState presented;
+  Sizes sizes;
+};
+
+template <class Real, bool turning>
+class SoftSpheres final : public ParticleEngine {
+ public:
+  SoftSpheres(const Scene& scene, const Mesh& mesh, ContactLaws laws, ParticleState initial);
+
+  const ParticleState& particles() const override { return presented_; }
+  bool mobile() const override { return true; }
+  EngineCounters counters() const override;
+  void advance(double window, int sub_steps, std::span<const Vector3> force,
+               const Progress& progress) override;
+  void exchange(std::span<const int> leaving, const ParticleState& entering) override;
+  void commit() override;
+  void rollback() override;
+
+ private:
+  using BodyRow = Body<Real, turning>;
+  using LoadRow = Load<Real, turning>;
+  using List = ContactList<Real>;
+
+  void name_walls();
+  void place_walls(double time);
+  bool walls_moved_far() const;
+  void check_surfaces() const;
+  void size_up();
+  BodyRow body_of(int row) const;
+  void tabulate_sides();
+  void set_drive(std::span<const Vector3> force);
+  bool sweep(Phase phase, double time_step, double spring_step, int from, int to,
+             HugeVector<LoadRow>& loads);
+  void sort_and_list(int from, int to, const Places& places, bool carry_springs);
+  Places take_out(std::span<const int> leaving);
+  void put_in(const ParticleState& entering, Places& places);
+  Places kept_places() const;
+  void wrap(HugeVector<BodyRow>& bodies);
+  void check(int bodies, double time_step, int sub_step, int sub_steps) const;
+  void present(int bodies);
+  void save_springs();
+  int threads_for(const Blocks& blocks) const {
+    return std::clamp(threads_, 1, std::max(1, blocks.count()));
+  }
+
+  Domain domain_;
+  ContactLaws laws_;
+  LawTable<Real> law_table_;
+  std::array<double[4], 27> shifts_{};
+  std::array<double[4], 6> planes_{};
+  Vector3 gravity_;
+  bool any_periodic_;
+  int threads_;
+  Walls walls_;
+  std::vector<int> surface_materials_;  // of each surface
+  std::vector<int> wall_materials_;     // of all walls, each once
+  double placed_at_ = 0;                // [s] where the walls stand
+  double time_ = 0;                     // [s] of the committed state
+  double window_ = 0;                   // [s] of the candidate
+  double time_step_;                    // [s] of the scene
+  Sizes sizes_;
+
+  ParticleState presented_;
+  std::array<HugeVector<BodyRow>, 3> bodies_;  // committed, and two to go back and forth
+  int committed_ = 0;
+  int candidate_ = 0;
+  HugeVector<LoadRow> loads_;            // of the committed state
+  HugeVector<LoadRow> candidate_loads_;  // of the candidate
+  std::array<List, 3> lists_;            // in use, kept for rollback, being made
+  int list_ = 0;
+  int committed_list_ = 0;
+  std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
+  std::optional<BeforeExchange> before_exchange_;
+  bool has_candidate_ = false;
+  HugeVector<Drive<Real>> drive_;
+  HugeVector<LoadRow> sums_;  // room for each thread
+
+  // Kept between rebuilds so that they need no memory of their own each time.
+  SizeLevels levels_;
+  Resorting resorting_;
+  HugeVector<Drive<Real>> sorted_drive_;
+  std::int64_t rebuilds_ = 0;
+  std::int64_t sub_steps_ = 0;
+};
+
+}  // namespace fluxpact
+
+#include "dem_server/backends/native/soft_spheres_exchange-inl.hpp"
+#include "dem_server/backends/native/soft_spheres_lists-inl.hpp"
+#include "dem_server/backends/native/soft_spheres_run-inl.hpp"
+#include "dem_server/backends/native/soft_spheres_setup-inl.hpp"

@@ -1,0 +1,160 @@
+// What follows from the scene and the particles before the first sub-step.
+#pragma once
+
+#include "dem_server/backends/native/soft_spheres.hpp"
+
+namespace fluxpact {
+
+/// List pairs per particle against rebuilds: 0.15 diameters is near the best from a bed at rest to
+/// one that bubbles.
+inline constexpr double skin_per_diameter = 0.15;
+/// Pairs of the list name their law by one byte.
+inline void check_law_indices(const ContactLaws& laws) {
+  if (laws.count() <= 256) return;
+  throw ConfigError(
+      "particles.materials: {} materials; the native engine tells at most 15 apart, so give those "
+      "that behave alike one name",
+      laws.walls());
+}
+
+/// Of particles that all have the same mass, and are free.
+inline RootMasses common_root_masses(const ParticleState& particles) {
+  const int count = particles.size();
+  const auto mass = [&](int row) {
+    return sphere_mass(particles.radius[row], particles.density[row]);
+  };
+  for (int row = 0; row < count; ++row) {
+    if (mass(row) != mass(0) || particles.is_fixed(row)) return {};
+  }
+  if (count == 0) return {};
+  return {std::sqrt(mass(0) / 2), std::sqrt(mass(0))};
+}
+
+template <class Real, bool turning>
+SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, ContactLaws laws,
+                                        ParticleState initial)
+    : domain_(particle_domain(scene, mesh)),
+      laws_(std::move(laws)),
+      law_table_(law_table<Real>(laws_)),
+      gravity_(scene.scene.gravity),
+      walls_(make_walls(scene, mesh)),
+      presented_(checked_rows(std::move(initial), laws_.walls())) {
+  const auto is = [this](SideKind kind) {
+    return std::find(domain_.sides.begin(), domain_.sides.end(), kind) != domain_.sides.end();
+  };
+  any_periodic_ = is(SideKind::periodic);
+  const int asked = scene.particles.numerics.threads;
+  threads_ = asked > 0 ? asked : omp_get_max_threads();
+  if (is(SideKind::wall)) wall_materials_.push_back(laws_.walls());
+  name_walls();
+  time_step_ = scene.coupling.window / sub_steps(scene);
+  check_law_indices(laws_);
+  size_up();
+  tabulate_sides();
+  const int count = presented_.size();
+  Places places;
+  for (int row = 0; row < count; ++row) {
+    bodies_[0].push_back(body_of(row));
+    places.row.push_back(row);
+  }
+  places.previous.assign(count, -1);
+  lists_[list_].row = places.row;
+  check(0, 0, 0, 0);
+  loads_.resize(count);
+  bodies_[2].resize(count);
+  sort_and_list(0, 1, places, false);
+  // Forces of contacts that exist from the start, with their springs at rest.
+  sweep(Phase::settle, 0, 0, 1, 2, loads_);
+  committed_ = candidate_ = 2;
+  committed_list_ = list_;
+  present(committed_);
+}
+
+/// The materials of the surfaces.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::name_walls() {
+  for (int surface = 0; surface < walls_.size(); ++surface) {
+    int material = 0;
+    while (material < laws_.walls() && laws_.name(material) != walls_[surface].material) ++material;
+    surface_materials_.push_back(material);
+    if (std::ranges::find(wall_materials_, material) == wall_materials_.end()) {
+      wall_materials_.push_back(material);
+    }
+  }
+}
+
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::place_walls(double time) {
+  placed_at_ = time;
+  if (walls_.moving()) walls_.place(time);
+}
+
+/// True if a surface may have come near a particle that the list does not know of: the list covers
+/// a skin, of which each of the two has half.
+template <class Real, bool turning>
+bool SoftSpheres<Real, turning>::walls_moved_far() const {
+  return walls_.moving() &&
+         walls_.travelled(lists_[list_].time, sizes_.largest_radius + sizes_.skin) >
+             0.5 * sizes_.skin;
+}
+
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::check_surfaces() const {
+  const List& list = lists_[list_];
+  for (int b = 0; b < list.blocks.count(); ++b) {
+    const int place = list.block[b].surfaces.lost;
+    if (place >= 0) refuse_lost_in_surface(presented_.id[list.row[list.blocks.first(b) + place]]);
+  }
+}
+
+/// Lengths and limits that follow from the particles.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::size_up() {
+  double largest = 0;
+  double mean = 0;
+  for (const double radius : presented_.radius) {
+    largest = std::max(largest, 2 * radius);
+    mean += 2 * radius / presented_.size();
+  }
+  sizes_.largest_radius = 0.5 * largest;
+  sizes_.skin = skin_per_diameter * mean;
+  sizes_.beyond_contact = reach_beyond_contact(laws_, 0.5 * largest);
+  sizes_.root_masses = common_root_masses(presented_);
+  sizes_.limit = step_limit(laws_, presented_, wall_materials_);
+  check_periods(domain_, largest, largest + sizes_.skin + sizes_.beyond_contact);
+  check_time_step(sizes_.limit, time_step_);
+}
+
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::tabulate_sides() {
+  const std::array<Vector3, 27> shifts = shift_vectors(domain_);
+  for (int code = 0; code < 27; ++code) {
+    for (int axis = 0; axis < 3; ++axis) shifts_[code][axis] = shifts[code][axis];
+  }
+  for (int side = 0; side < 6; ++side) {
+    const double inward = side % 2 == 0 ? 1.0 : -1.0;
+    planes_[side][side / 2] = inward;
+    planes_[side][3] = inward * domain_.plane(side);
+  }
+}
+
+template <class Real, bool turning>
+auto SoftSpheres<Real, turning>::body_of(int row) const -> BodyRow {
+  const double radius = presented_.radius[row];
+  BodyRow body{};
+  body.radius = radius;
+  if (!presented_.is_fixed(row)) {
+    body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    body.position[axis] = presented_.position[row][axis];
+    body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);
+    if constexpr (turning) {
+      body.radius_spin[axis] = static_cast<Real>(radius * presented_.spin[row][axis]);
+    }
+  }
+  if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
+  return body;
+}
+
+}  // namespace fluxpact

@@ -101,7 +101,7 @@ class MeshFiles(ProgramTest):
         self.assertLess(numpy.abs(record["velocity"][:, :2]).max(), 1e-3)
 
     def test_a_bed_of_spheres_rests_in_a_pipe(self):
-        stdout, _ = self.run_config("bed_in_a_pipe")
+        self.run_config("bed_in_a_pipe")
         for row in self.audit():
             self.assertLess(abs(row["relative_imbalance"]), CONSERVED, row)
             self.assertLess(row["max_cell_residual"], CONSERVED, row)
@@ -116,11 +116,20 @@ class MeshFiles(ProgramTest):
         self.assertGreater((position[:, 2] - radius).min(), -5e-5)
         # 2000 spheres fill 14.4 mm of the pipe, and a random packing 0.5 to 0.64 of its volume.
         self.assertLess(position[:, 2].max() + 1.5e-3, 0.0144 / 0.5 + 3e-3)
-        self.assertLess(numpy.median(numpy.linalg.norm(velocity, axis=1)), 5e-3)
-        self.check_drop(results, stdout)
+        self.assertLess(numpy.median(numpy.linalg.norm(velocity, axis=1)), 1e-3)
+        self.check_drop_in_bed(results)
 
-    def check_drop(self, results, stdout):
-        self.assertIn("pressure drop", stdout)
+    def check_drop_in_bed(self, results):
+        """Between two layers of cells within the bed of 3 mm spheres, 10 mm apart."""
+        record = results["fields"][sorted(results["fields"])[-1]]
+        z, volumes = results["mesh/cell_centres"][:, 2], results["mesh/cell_volumes"][:]
+        layers = [numpy.abs(z - height) < 1e-6 for height in (0.0125, 0.0175, 0.0225)]
+        pressure = [record["pressure"][:][layer].mean() for layer in layers]
+        voidage = [numpy.average(record["voidage"][:][layer], weights=volumes[layer]) for layer in layers]
+        slopes = [ergun(e, 3e-3, 1.8e-5, 1.2, 0.4) for e in voidage]
+        expected = 0.005 * (0.5 * slopes[0] + slopes[1] + 0.5 * slopes[2])
+        # The bed is looser at the wall, and more air flows there; were it free to, the drop would be 3 % less than in an even bed.
+        self.assertLess(abs(pressure[0] - pressure[2] - expected), 0.03 * expected)
 
     def run_config(self, name):
         path = SOURCE / "configs" / f"{name}.yaml"

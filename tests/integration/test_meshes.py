@@ -109,7 +109,7 @@ class MeshFiles(ProgramTest):
         bed = results["particles"][sorted(results["particles"])[-1]]
         position, velocity, radius = bed["position"][:], bed["velocity"][:], bed["radius"][:]
         self.assertEqual(len(radius), 2000)
-        # In the pipe and above the inlet, up to the overlap under the weight of the bed: 2000 spheres stand on some 100, with 20 m g
+        # In the pipe and above the inlet, up to the overlap under the weight of the bed: 2000 spheres stand on some 100 with 20 m g
         # each, 7e-3 N or 7e-6 m; some carry a few times that.
         reach = numpy.hypot(position[:, 0], position[:, 1]) + radius
         self.assertLess(reach.max(), 0.025 + 5e-5)

@@ -93,8 +93,6 @@ Scene scene_of(const Settling& bed, const std::string& material) {
   scene.particles.insertion = {InsertionSettings{}};
   scene.particles.insertion.front().material = material;
   scene.particles.outflow.emplace();
-  // The run begins with moving surfaces as they are drawn, so the bed settles between those.
-  for (auto& [name, surface] : scene.particles.surfaces) surface.motion = {};
   return scene;
 }
 

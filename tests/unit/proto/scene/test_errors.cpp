@@ -117,6 +117,14 @@ TEST(SceneErrors, keys_without_meaning_for_the_type) {
       "s.yaml:46:57: particles.insertion[1].count: ", {"only with `type: packing | settled`"});
 }
 
+TEST(SceneErrors, refuse_a_velocity_of_fixed_spheres) {
+  const Scene fixed = read_scene(with("diameter: 0.003}", "diameter: 0.003, motion: fixed}"), "s");
+  EXPECT_EQ(fixed.particles.insertion[0].motion, Mobility::free);
+  EXPECT_EQ(fixed.particles.insertion[1].motion, Mobility::fixed);
+  expect_error(with("velocity: [0, 0, 1]", "velocity: [0, 0, 1], motion: fixed"),
+               "s.yaml:45:99: particles.insertion[0].velocity", {"motion: free"});
+}
+
 TEST(SceneErrors, conditions_of_a_misspelt_type_are_not_reported_on_top) {
   expect_error(with("type: mass_flow", "type: massflow"),
                "s.yaml:24:19: fluid.boundaries.inlet.type: `massflow`", {"nearest: `mass_flow`"});

@@ -20,8 +20,11 @@ struct ParticleState {
   std::vector<double> radius;     ///< [m]
   std::vector<double> density;    ///< [kg/m³]
   std::vector<int> material;      ///< index into the engine's materials
+  std::vector<std::uint8_t>
+      fixed{};  ///< 1: nothing moves it, as if infinitely heavy; empty: none is
 
   int size() const { return static_cast<int>(id.size()); }
+  bool is_fixed(int row) const { return !fixed.empty() && fixed[row] != 0; }
 };
 
 /// What an engine tells of its own work.
@@ -38,7 +41,8 @@ class ParticleEngine {
   /// The newest state: the candidate after `advance`, else the committed one.
   virtual const ParticleState& particles() const = 0;
 
-  /// False if forces do not move the particles (a frozen bed): they then count as infinitely heavy.
+  /// False if forces move none of the particles (a frozen bed): all then count as infinitely heavy,
+  /// as else those that are `fixed`.
   virtual bool mobile() const = 0;
 
   /// Advance by `window` [s] in `sub_steps` equal steps under gravity, contact, and a force [N] on

@@ -37,6 +37,8 @@ void check_row(const ParticleState& particles, int row, int materials) {
        {particles.position[row], particles.velocity[row], particles.spin[row]}) {
     if (!vector.allFinite()) refuse("position, velocity or spin", vector.sum(), "finite");
   }
+  const double speed = particles.velocity[row].norm() + radius * particles.spin[row].norm();
+  if (particles.is_fixed(row) && speed > 0) refuse("speed", speed, "0 [m/s], since it is fixed");
 }
 
 }  // namespace
@@ -45,7 +47,8 @@ ParticleState checked_rows(ParticleState particles, int materials) {
   const std::size_t count = particles.id.size();
   if (particles.position.size() != count || particles.velocity.size() != count ||
       particles.spin.size() != count || particles.radius.size() != count ||
-      particles.density.size() != count || particles.material.size() != count) {
+      particles.density.size() != count || particles.material.size() != count ||
+      (!particles.fixed.empty() && particles.fixed.size() != count)) {
     throw ConfigError(
         "the particle arrays differ in length; each needs one row for each of the {} ids", count);
   }
@@ -60,6 +63,7 @@ ParticleState checked_rows(ParticleState particles, int materials) {
   reorder(order, particles.radius);
   reorder(order, particles.density);
   reorder(order, particles.material);
+  if (!particles.fixed.empty()) reorder(order, particles.fixed);
   for (int row = 0; row < particles.size(); ++row) check_row(particles, row, materials);
   return particles;
 }
@@ -73,6 +77,13 @@ void exchange_rows(std::span<const int> leaving, const ParticleState& entering,
                         last);
     }
     last = id;
+  }
+  if (!particles.fixed.empty() || !entering.fixed.empty()) {
+    std::vector<std::uint8_t> added = entering.fixed;
+    added.resize(entering.id.size(), 0);
+    particles.fixed.resize(particles.id.size(), 0);
+    remove_rows(leaving, particles.fixed);
+    particles.fixed.insert(particles.fixed.end(), added.begin(), added.end());
   }
   const auto exchange = [&](auto& values, const auto& added) {
     remove_rows(leaving, values);

@@ -10,8 +10,8 @@
 namespace fluxpact {
 
 /// The same particles, ascending by id. Throws ConfigError that names the particle if an id stands
-/// twice, a radius or density is not positive, a material is not among `materials`, or a number is
-/// not finite; and if the arrays differ in length.
+/// twice, a radius or density is not positive, a material is not among `materials`, a number is
+/// not finite, or a fixed one has a speed; and if the arrays differ in length.
 ParticleState checked_rows(ParticleState particles, int materials);
 
 /// Takes the rows `leaving` out of `particles`, in place, and appends `entering`. Throws

@@ -168,21 +168,27 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progr
   const std::vector<std::string> names = material_names(scene.particles);
   ParticleState state;
   std::vector<int> entry_of;
+  bool any_fixed = false;
   for (const InsertionSettings& settings : scene.particles.insertion) {
     const Entry entry{settings, static_cast<int>(&settings - scene.particles.insertion.data()) + 1};
     const int material = material_index(entry, names);
     const double density = scene.particles.materials.at(settings.material).density;
+    const bool fixed = settings.motion == Mobility::fixed;
+    any_fixed = any_fixed || fixed;
     for (const ListedParticle& particle : placed(scene, entry, domain, room, alive)) {
       state.id.push_back(state.size() + 1);
       state.position.push_back(particle.position);
-      state.velocity.push_back(particle.velocity);
-      state.spin.push_back(particle.spin);
+      // A file may hold the speeds at which particles were caught.
+      state.velocity.push_back(fixed ? Vector3::Zero() : particle.velocity);
+      state.spin.push_back(fixed ? Vector3::Zero() : particle.spin);
+      state.fixed.push_back(fixed ? 1 : 0);
       state.radius.push_back(0.5 * *particle.diameter);
       state.density.push_back(density);
       state.material.push_back(material);
       entry_of.push_back(entry.number);
     }
   }
+  if (!any_fixed) state.fixed.clear();
   if (scene.particles.overlaps == Overlaps::relax) relax(domain, room, entry_of, state);
   check_placement(state, entry_of, domain);
   check_walls(state, entry_of, room);

@@ -23,7 +23,7 @@ Vector3 predicted_velocity(const ExchangeSettings& settings, const Prediction& p
                            const Vector3& gradient, const ParticleState& particles,
                            const ParticleBulk& bulk, int i) {
   const Vector3& velocity = particles.velocity[i];
-  if (!settings.mobile) return velocity;
+  if (!settings.mobile || particles.is_fixed(i)) return velocity;
   Vector3 coming = settings.gravity;
   if (settings.pressure_gradient) coming -= gradient / particles.density[i];
   if (settings.buoyancy) {
@@ -121,7 +121,7 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
         fluid.solved ? offer.weights.gather(i, fluid.pressure_gradient, no_vector) : no_vector;
     offer.velocity[i] =
         predicted_velocity(settings, past, offer.window, gradient, particles, bulk, i);
-    if (settings.mobile) {
+    if (settings.mobile && !particles.is_fixed(i)) {
       offer.coefficient[i] /= 1 + offer.coefficient[i] * offer.window / bulk.mass[i];
     }
   }

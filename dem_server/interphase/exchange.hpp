@@ -29,7 +29,8 @@ struct ExchangeSettings {
   PressureModel model = PressureModel::a;
   bool pressure_gradient = true;  ///< −V_p ∇p_d acts on the particles (pressure model a)
   bool buoyancy = true;           ///< −ρ V_p g, the hydrostatic part of it (both models)
-  bool mobile = true;             ///< false: particles count as infinitely heavy (b = 0)
+  bool mobile = true;  ///< false: all particles count as infinitely heavy, not only those
+                       ///< that are fixed
   int threads = 1;
 };
 

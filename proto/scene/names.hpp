@@ -153,6 +153,11 @@ inline constexpr auto enum_names<InsertionType> = std::to_array<Named<InsertionT
     {InsertionType::file, "file"},
 });
 template <>
+inline constexpr auto enum_names<Mobility> = std::to_array<Named<Mobility>>({
+    {Mobility::free, "free"},
+    {Mobility::fixed, "fixed"},
+});
+template <>
 inline constexpr auto enum_names<SizeDistribution> = std::to_array<Named<SizeDistribution>>({
     {SizeDistribution::table, "table"},
     {SizeDistribution::uniform, "uniform"},

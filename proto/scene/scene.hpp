@@ -287,6 +287,7 @@ struct ContactSettings {
 };
 
 enum class InsertionType { packing, settled, lattice, file };
+enum class Mobility { free, fixed };
 enum class SizeDistribution { table, uniform, normal, lognormal };
 enum class SizeWeight { number, mass };
 
@@ -313,8 +314,9 @@ struct InsertionSettings {
   int seed = 1;                       ///< packing, settled
   double spacing = 0;         ///< [m] lattice: distance of neighbours; default 1.001 diameters
   Vector3 velocity{0, 0, 0};  ///< [m/s] packing, lattice
-  std::string path;           ///< file
-  std::string group;          ///< file: HDF5 group of the datasets; empty: found
+  Mobility motion = Mobility::free;
+  std::string path;   ///< file
+  std::string group;  ///< file: HDF5 group of the datasets; empty: found
 };
 
 /// Particles that come in during the run. Exactly one of `patch` and `within`, of `diameter` and

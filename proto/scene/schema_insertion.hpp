@@ -140,10 +140,16 @@ void describe(Visit& visit, InsertionSettings& entry) {
          .only_with = "type: lattice",
          .meaning = "Distance of neighbours."},
         entry.spacing);
+  visit(
+      {.name = "motion",
+       .meaning = "`fixed`: the spheres stay where they are at time 0, whatever acts on them, and "
+                  "do not turn: free ones bounce off them, the fluid flows around them. They "
+                  "need no contact law with each other and with walls."},
+      entry.motion);
   visit({.name = "velocity",
          .dimension = Dimension::velocity,
-         .applies = !file && !settled,
-         .only_with = "type: packing | lattice",
+         .applies = !file && !settled && entry.motion == Mobility::free,
+         .only_with = "type: packing | lattice, motion: free",
          .meaning = "Of all spheres at the start."},
         entry.velocity);
   visit({.name = "path",

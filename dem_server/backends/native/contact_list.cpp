@@ -118,6 +118,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
   for (int i = first; i < last; ++i) {
     const Body<Real, turning>& a = from.spheres[i];
     const double reach = a.radius + from.reach;
+    const bool fixed = a.inverse_mass == 0;
     const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base) {
       const Vector3& image = from.shifts[shift];
       for (int j = begin; j < end; ++j) {
@@ -127,6 +128,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
         const double z = a.position[2] - b.position[2] - image[2];
         const double sum = reach + b.radius;
         if (x * x + y * y + z * z >= sum * sum || j == i) continue;
+        if (fixed && b.inverse_mass == 0) continue;  // neither would move
         const int law = from.law(list, i, from.material_of_row[list.row[j]]);
         pairs.push_back({j - base, static_cast<std::uint16_t>(i - first),
                          static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
@@ -172,6 +174,7 @@ void find_planes(const Sources<Real, turning>& from, int index, const ContactLis
   const int first = list.blocks.first(index);
   for (int i = first; i < list.blocks.last(index); ++i) {
     const Body<Real, turning>& body = from.spheres[i];
+    if (body.inverse_mass == 0) continue;
     for (int side = 0; side < 6; ++side) {
       if (domain.sides[side] != SideKind::wall) continue;
       const double inward = side % 2 == 0 ? 1.0 : -1.0;
@@ -233,6 +236,7 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
   const int first = list.blocks.first(index);
   for (int i = first; i < list.blocks.last(index); ++i) {
     const Body<Real, turning>& body = from.spheres[i];
+    if (body.inverse_mass == 0) continue;  // fixed: no wall moves it
     const std::size_t had = contacts.elements.size();
     const bool held =
         from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), body.radius + from.reach,

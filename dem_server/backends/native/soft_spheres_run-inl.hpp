@@ -17,7 +17,8 @@ void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
   for (int i = 0; i < count; ++i) {
     const int row = lists_[list_].row[i];
     const double inverse_mass = static_cast<double>(bodies_[committed_][i].inverse_mass);
-    const Vector3 drive = gravity_ + force[row] * inverse_mass;
+    const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
+    const Vector3 drive = fall + force[row] * inverse_mass;
     for (int axis = 0; axis < 3; ++axis) {
       drive_[i].acceleration[axis] = static_cast<Real>(drive[axis]);
     }
@@ -193,6 +194,7 @@ void SoftSpheres<Real, turning>::rollback() {
     block.plane_springs = saved_springs_[b].plane;
     block.surfaces.springs = saved_springs_[b].surface;
     block.surfaces.touches = saved_springs_[b].touches;
+    block.surfaces.lost = -1;
   }
   candidate_ = committed_;
   present(committed_);

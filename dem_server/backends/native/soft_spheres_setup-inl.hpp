@@ -17,14 +17,14 @@ inline void check_law_indices(const ContactLaws& laws) {
       laws.walls());
 }
 
-/// Of particles that all have the same mass.
+/// Of particles that all have the same mass, and are free.
 inline RootMasses common_root_masses(const ParticleState& particles) {
   const int count = particles.size();
   const auto mass = [&](int row) {
     return sphere_mass(particles.radius[row], particles.density[row]);
   };
-  for (int row = 1; row < count; ++row) {
-    if (mass(row) != mass(0)) return {};
+  for (int row = 0; row < count; ++row) {
+    if (mass(row) != mass(0) || particles.is_fixed(row)) return {};
   }
   if (count == 0) return {};
   return {std::sqrt(mass(0) / 2), std::sqrt(mass(0))};
@@ -143,7 +143,9 @@ auto SoftSpheres<Real, turning>::body_of(int row) const -> BodyRow {
   const double radius = presented_.radius[row];
   BodyRow body{};
   body.radius = radius;
-  body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+  if (!presented_.is_fixed(row)) {
+    body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
+  }
   for (int axis = 0; axis < 3; ++axis) {
     body.position[axis] = presented_.position[row][axis];
     body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);

@@ -15,24 +15,26 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double share_of_contact_time = 0.1;
 constexpr double share_of_rayleigh_time = 0.2;
 
-/// The particles of one material.
+/// The particles of one material, either the free or the fixed ones.
 struct Present {
   int count = 0;
-  double lightest = infinity;  ///< [kg]
+  double lightest = infinity;  ///< [kg]; fixed ones are infinitely heavy
   double smallest = infinity;  ///< radius [m]
   double largest = 0;          ///< radius [m]
   double rayleigh = infinity;  ///< smallest r sqrt(ρ)
   double fastest = 0;          ///< [m/s]
 };
 
+/// The free ones of each material, then the fixed ones of each.
 std::vector<Present> count_materials(const ContactLaws& laws, const ParticleState& particles) {
-  std::vector<Present> present(static_cast<std::size_t>(laws.walls()) + 1);
+  std::vector<Present> present(2 * static_cast<std::size_t>(laws.walls()));
   for (int row = 0; row < particles.size(); ++row) {
-    Present& material = present[particles.material[row]];
+    const bool fixed = particles.is_fixed(row);
+    Present& material = present[particles.material[row] + (fixed ? laws.walls() : 0)];
     const double radius = particles.radius[row];
     const double density = particles.density[row];
     ++material.count;
-    material.lightest = std::min(material.lightest, sphere_mass(radius, density));
+    if (!fixed) material.lightest = std::min(material.lightest, sphere_mass(radius, density));
     material.smallest = std::min(material.smallest, radius);
     material.largest = std::max(material.largest, radius);
     material.rayleigh = std::min(material.rayleigh, radius * std::sqrt(density));
@@ -101,7 +103,7 @@ void check_meeting(const Meeting& meeting, const ContactModel& model) {
   }
 }
 
-double in_series(double a, double b) { return a * b / (a + b); }
+double in_series(double a, double b) { return std::isinf(b) ? a : a * b / (a + b); }
 
 /// A particle of material `a` at a wall of material `wall`.
 Meeting meeting_with_wall(const ContactLaws& laws, const Present& one, int a, int wall) {
@@ -113,12 +115,13 @@ Meeting meeting_with_wall(const ContactLaws& laws, const Present& one, int a, in
           one.fastest};
 }
 
-/// Particles of the materials `a` and `b`.
+/// Free particles of the material `a` and those of the group `b`.
 Meeting meeting_of(const ContactLaws& laws, const std::vector<Present>& present, int a, int b) {
   const Present& one = present[a];
   const Present& other = present[b];
-  return {laws[laws.index(a, b)],
-          fmt::format("[{}, {}]", laws.name(a), laws.name(b)),
+  const int material = b % laws.walls();
+  return {laws[laws.index(a, material)],
+          fmt::format("[{}, {}]", laws.name(a), laws.name(material)),
           in_series(one.lightest, other.lightest),
           in_series(one.smallest, other.smallest),
           in_series(one.largest, other.largest),
@@ -134,24 +137,32 @@ StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
   const auto consider = [&](const StepLimit& limit) {
     if (limit.longest < least.longest) least = limit;
   };
-  for (int a = 0; a < laws.walls(); ++a) {
+  const int materials = laws.walls();
+  const int groups = 2 * materials;
+  std::vector<bool> meets(groups, false);
+  const auto meet = [&](const Meeting& meeting) {
+    check_meeting(meeting, laws.model());
+    consider(limit_of(meeting, laws.model()));
+  };
+  for (int a = 0; a < materials; ++a) {
     if (present[a].count == 0) continue;
-    bool meets = false;
-    const auto meet = [&](const Meeting& meeting) {
-      check_meeting(meeting, laws.model());
-      consider(limit_of(meeting, laws.model()));
-      meets = true;
-    };
-    for (const int wall : walls) meet(meeting_with_wall(laws, present[a], a, wall));
-    for (int b = laws.walls() - 1; b >= a; --b) {
-      if (present[b].count > (a == b ? 1 : 0)) meet(meeting_of(laws, present, a, b));
+    for (const int wall : walls) {
+      meet(meeting_with_wall(laws, present[a], a, wall));
+      meets[a] = true;
     }
-    if (meets && laws.model().law == ContactLaw::hertz) {
-      const double rayleigh = laws.rayleigh_factor(a) * present[a].rayleigh;
-      consider(
-          {share_of_rayleigh_time * rayleigh,
-           fmt::format("a fifth of the Rayleigh time of {}, {:.4g} s", laws.name(a), rayleigh)});
+    for (int b = groups - 1; b >= a; --b) {
+      if (present[b].count <= (a == b ? 1 : 0)) continue;
+      meet(meeting_of(laws, present, a, b));
+      meets[a] = meets[b] = true;
     }
+  }
+  for (int a = 0; a < groups && laws.model().law == ContactLaw::hertz; ++a) {
+    if (!meets[a]) continue;
+    const int material = a % materials;
+    const double rayleigh = laws.rayleigh_factor(material) * present[a].rayleigh;
+    consider({share_of_rayleigh_time * rayleigh,
+              fmt::format("a fifth of the Rayleigh time of {}, {:.4g} s", laws.name(material),
+                          rayleigh)});
   }
   return least;
 }

@@ -124,6 +124,24 @@ TEST(Insertion, reads_columns_by_name) {
   EXPECT_EQ(state.radius[1], 0.5e-3);
 }
 
+TEST(Insertion, fixes_the_spheres_of_entries_that_ask_for_it) {
+  // A file of spheres on the move: those of a fixed entry stand still.
+  const CsvFile file(
+      "x,y,z,vx,vy,vz,wx,wy,wz\n0.001,0.001,0.001,1,2,3,4,5,6\n0.004,0.004,0.004,1,2,3,4,5,6\n");
+  Scene scene = file_scene(file);
+  EXPECT_EQ(insert(scene).velocity[1], Vector3(1, 2, 3));
+  EXPECT_TRUE(insert(scene).fixed.empty()) << "nothing is stored for what no entry asks for";
+  InsertionSettings& above = add_entry(scene, InsertionType::lattice);
+  above.diameter = 5e-3;
+  above.within.z = {0.02, 0.026};
+  scene.particles.insertion[0].motion = Mobility::fixed;
+  const ParticleState state = insert(scene);
+  ASSERT_GT(state.size(), 2);
+  for (int row = 0; row < state.size(); ++row) EXPECT_EQ(state.is_fixed(row), row < 2) << row;
+  EXPECT_EQ(state.velocity[1], Vector3::Zero());
+  EXPECT_EQ(state.spin[1], Vector3::Zero());
+}
+
 TEST(Insertion, takes_the_diameter_of_the_entry_if_the_file_has_none) {
   const CsvFile file("x,y,z\n0.005,0.01,0.015\n");
   Scene scene = file_scene(file);

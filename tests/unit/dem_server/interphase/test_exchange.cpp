@@ -205,6 +205,26 @@ TEST_F(Exchange, takes_particles_that_cannot_move_as_infinitely_heavy) {
   }
 }
 
+TEST_F(Exchange, takes_fixed_particles_as_infinitely_heavy_and_no_others) {
+  make_offer(0.01);
+  const Offer all_free = offer;
+  particles.fixed.assign(particles.id.size(), 0);
+  for (int i = 0; i < particles.size(); i += 3) {
+    particles.fixed[i] = 1;
+  }
+  make_offer(0.01);
+  for (int i = 0; i < particles.size(); ++i) {
+    if (!particles.is_fixed(i)) {
+      EXPECT_EQ(offer.velocity[i], all_free.velocity[i]);
+      EXPECT_EQ(offer.coefficient[i], all_free.coefficient[i]);
+      continue;
+    }
+    EXPECT_EQ(offer.velocity[i], particles.velocity[i]);
+    EXPECT_NEAR(offer.coefficient[i], zeta(i), 1e-14 * zeta(i));
+    EXPECT_GT(offer.coefficient[i], all_free.coefficient[i]);
+  }
+}
+
 TEST_F(Exchange, expects_contacts_to_carry_what_they_carried) {
   const double window = 0.01;
   settings.law = DragLaw::none;

@@ -31,6 +31,7 @@ class FreeFlight : public ParticleEngine {
     newest_ = true;
     if (held_) return;
     for (int i = 0; i < candidate_.size(); ++i) {
+      if (candidate_.is_fixed(i)) continue;
       const double r = candidate_.radius[i];
       const double mass = candidate_.density[i] * (4.0 / 3.0 * 3.14159265358979323846 * r * r * r);
       const Vector3 acceleration = gravity_ + force[i] / mass;

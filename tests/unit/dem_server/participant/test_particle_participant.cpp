@@ -170,6 +170,33 @@ TEST(ParticleParticipant, hands_over_the_momentum_that_the_fluid_lost_the_window
   }
 }
 
+TEST(ParticleParticipant, hands_over_to_fixed_particles_as_to_free_ones) {
+  // What fixed ones are given goes into what holds them: the ledger of fluid and particles closes.
+  Bench bench;
+  bench.scene.fluid.viscosity = 1.0;
+  ParticleState particles = cloud();
+  for (int row = 0; row < particles.size(); row += 2) particles.velocity[row].setZero();
+  particles.fixed.resize(particles.id.size(), 0);
+  for (int row = 0; row < particles.size(); row += 2) particles.fixed[row] = 1;
+  for (Vector3& velocity : bench.velocity) velocity = {0.1, 0, 0.5};
+  const auto side = bench.take_part(particles);
+  Fields begin;
+  side->start({}, begin);
+  Vector3 lost = Vector3::Zero();
+  for (int step = 1; step <= 5; ++step) {
+    Fields out;
+    side->advance(bench.window(step), bench.fluid(), out, quiet);
+    const Vector3 given = sum(out.vectors(field::impulse_given, 27));
+    side->commit();
+    EXPECT_LE((given - lost).norm(), 1e-13 * lost.norm()) << step;  // sums over 60 and 27
+    const auto coefficient = out.scalars(field::drag_coefficient, 27);
+    const auto source = out.vectors(field::drag_source, 27);
+    lost.setZero();
+    for (int c = 0; c < 27; ++c) lost -= 1e-3 * (source[c] - coefficient[c] * bench.velocity[c]);
+    EXPECT_GT(lost.norm(), 0);
+  }
+}
+
 TEST(ParticleParticipant, gives_the_impulse_where_the_fluid_was_told_of_it) {
   Bench bench;
   bench.scene.interphase.voidage = VoidageMap::centroid;

@@ -1,6 +1,7 @@
 // The linear solvers against each other and against the true residual.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numeric>
 #include <random>
 
@@ -325,6 +326,20 @@ TEST(MomentumSolver, solves_convection_diffusion_and_free_slip) {
     EXPECT_LE((solver.change[cell] - exact[cell]).norm(),
               1e-6);  // 1e-10 times a condition of some thousands
   }
+}
+
+// Open MPI, on which Debian's hypre is built, would give all single processes of a machine one
+// folder of temporary files, and two that start at the same time would trip over each other's.
+TEST(Pressure, solver_starts_without_a_folder_for_temporary_files) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("TMPDIR", "/proc/nowhere", 1);
+        const PressureProblem problem({4, 4, 4}, {}, 1, true);
+        make_pressure_solver(LinearSolverChoice::automatic, {}, problem.stencil);
+        std::exit(0);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -144,7 +144,7 @@ void describe(Visit& visit, InsertionSettings& entry) {
       {.name = "motion",
        .meaning = "`fixed`: the spheres stay where they are at time 0, whatever acts on them, and "
                   "do not turn: free ones bounce off them, the fluid flows around them. They "
-                  "need no contact law with each other and with walls."},
+                  "touch neither each other nor walls."},
       entry.motion);
   visit({.name = "velocity",
          .dimension = Dimension::velocity,

@@ -43,9 +43,9 @@ void start_hypre() {
   int initialized = 0;
   MPI_Initialized(&initialized);
   if (initialized == 0) {
-    // One process needs no daemon and no network; what the user has set stays. Nor has it anybody to
-    // meet in a folder of the temporary files, which has the same name for all such processes: two
-    // that start or end at once would trip over each other's.
+    // One process needs no daemon and no network; what the user has set stays. Nor has it anybody
+    // to meet in a folder of the temporary files, which has the same name for all such processes:
+    // two that start or end at once would trip over each other's.
     setenv("OMPI_MCA_orte_create_session_dirs", "false", 0);
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     setenv("OMPI_MCA_btl", "self", 0);

@@ -111,6 +111,7 @@ std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const
   }
   PackingBox box = entry_box(name_of(entry), settings.within, domain);
   if (!room.unbounded()) box.room = &room;
+  box.alive = alive;
   if (settings.type == InsertionType::packing) return pack(entry, box);
   if (settings.type == InsertionType::settled) {
     return settled_bed(scene, name_of(entry), settings, box, domain, alive);
@@ -122,11 +123,11 @@ std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const
 
 /// Push apart whatever overlaps.
 void relax(const Domain& domain, const Room& room, const std::vector<int>& entry,
-           ParticleState& state) {
+           const Progress& alive, ParticleState& state) {
   std::vector<double> diameters;
   for (const double radius : state.radius) diameters.push_back(2 * radius);
   const PushedApart result = push_apart(domain, diameters, relaxed_overlap, state.position,
-                                        room.unbounded() ? nullptr : &room);
+                                        room.unbounded() ? nullptr : &room, alive);
   if (result.done) return;
   if (result.b < 0) {
     throw ConfigError(
@@ -189,7 +190,7 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progr
     }
   }
   if (!any_fixed) state.fixed.clear();
-  if (scene.particles.overlaps == Overlaps::relax) relax(domain, room, entry_of, state);
+  if (scene.particles.overlaps == Overlaps::relax) relax(domain, room, entry_of, alive, state);
   check_placement(state, entry_of, domain);
   check_walls(state, entry_of, room);
   return state;

@@ -152,7 +152,8 @@ std::optional<std::vector<Vector3>> random_packing(const PackingBox& box,
   if (!has_room(box, *largest) || volume_of(diameters) > densest * box.volume()) return {};
   std::vector<Vector3> centres = scatter(box, diameters, seed);
   if (centres.empty()) return {};
-  if (!push_apart(domain_of(box), diameters, packing_overlap, centres, box.room).done) return {};
+  if (!push_apart(domain_of(box), diameters, packing_overlap, centres, box.room, box.alive).done)
+    return {};
   return centres;
 }
 

@@ -9,6 +9,7 @@
 
 #include "dem_server/backends/domain.hpp"
 #include "dem_server/walls/room.hpp"
+#include "proto/participant/participant.hpp"
 
 namespace fluxpact {
 
@@ -18,6 +19,7 @@ struct PackingBox {
   Vector3 upper;  ///< [m]
   std::array<bool, 3> periodic{};
   const Room* room = nullptr;  ///< the walls within the box that hold them, too; nullptr: none
+  Progress alive{};            ///< called now and then: a dense packing may take a while
 
   double volume() const { return (upper - lower).prod(); }
 };

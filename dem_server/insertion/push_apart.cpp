@@ -197,7 +197,7 @@ PushedApart largest_overlap(const Relaxation& state) {
 }  // namespace
 
 PushedApart push_apart(const Domain& domain, std::span<const double> diameters, double allowed,
-                       std::vector<Vector3>& centres, const Room* room) {
+                       std::vector<Vector3>& centres, const Room* room, const Progress& alive) {
   if (centres.empty()) return {true};
   Relaxation state{domain, allowed, 0, 0, centres, {}, {}, {}, {}, {}, shift_vectors(domain), room};
   state.diameter.assign(diameters.begin(), diameters.end());
@@ -210,6 +210,7 @@ PushedApart push_apart(const Domain& domain, std::span<const double> diameters, 
   list_pairs(state);
   PushedApart result = largest_overlap(state);
   for (int s = 0; s < most_sweeps && !result.done; ++s) {
+    if (alive) alive();
     const double met = sweep(state);
     if (list_is_stale(state)) list_pairs(state);
     // What a sweep meets is not what it leaves: look again when it seems done.

@@ -10,6 +10,7 @@
 
 #include "dem_server/backends/domain.hpp"
 #include "dem_server/walls/room.hpp"
+#include "proto/participant/participant.hpp"
 
 namespace fluxpact {
 
@@ -25,8 +26,9 @@ struct PushedApart {
 /// diameter] and each is wholly inside the walls of the domain; periodic sides wrap, open ones hold
 /// centres in. In a sweep over all pairs one pair moves its spheres by at most its overlap. Gives
 /// up after 4000 sweeps. The same bits for the same arguments. Walls of a room push likewise; a
-/// sphere that starts beyond one stays there.
+/// sphere that starts beyond one stays there. `alive` is called in every sweep.
 PushedApart push_apart(const Domain& domain, std::span<const double> diameters, double allowed,
-                       std::vector<Vector3>& centres, const Room* room = nullptr);
+                       std::vector<Vector3>& centres, const Room* room = nullptr,
+                       const Progress& alive = {});
 
 }  // namespace fluxpact

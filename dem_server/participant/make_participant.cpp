@@ -18,6 +18,8 @@ const char* name_of(ParticleBackend backend) {
 
 std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh,
                                             const Progress& alive) {
+  // Before particles are packed, which may take a while.
+  if (scene.particles.backend == ParticleBackend::kinematic) check_kinematic_mesh(scene, mesh);
   ParticleState particles = insert_particles(scene, mesh, alive);
   switch (scene.particles.backend) {
     case ParticleBackend::native:

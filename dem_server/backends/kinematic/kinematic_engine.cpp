@@ -60,8 +60,10 @@ class KinematicEngine final : public ParticleEngine {
   std::optional<ParticleState> before_exchange_;  ///< in a window in which some entered or left
 };
 
-/// Nothing would keep them inside.
-void refuse_other_than_box(const Scene& scene, const Mesh& mesh) {
+}  // namespace
+
+void check_kinematic_mesh(const Scene& scene, const Mesh& mesh) {
+  if (!has_particles(scene)) return;
   const std::vector<int> faces = faces_off_the_box(scene, mesh, particle_domain(scene, mesh));
   if (faces.empty()) return;
   const Vector3& at = mesh.face_centres[faces.front()];
@@ -71,11 +73,8 @@ void refuse_other_than_box(const Scene& scene, const Mesh& mesh) {
       at.x(), at.y(), at.z());
 }
 
-}  // namespace
-
 std::unique_ptr<ParticleEngine> make_kinematic_engine(const Scene& scene, const Mesh& mesh,
                                                       ParticleState initial) {
-  if (initial.size() > 0 || !scene.particles.inflow.empty()) refuse_other_than_box(scene, mesh);
   return std::make_unique<KinematicEngine>(scene, mesh, std::move(initial));
 }
 

@@ -18,6 +18,7 @@ namespace fluxpact::HWY_NAMESPACE {
 /// Contacts go through the registers in batches of as many as a register holds positions.
 using Positions = hn::CappedTag<double, 8>;
 inline constexpr int width = lanes_of<Positions>;
+
 template <class Real>
 using Lanes = hn::Rebind<Real, Positions>;
 

@@ -76,8 +76,9 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
   if (has_candidate_) rollback();
   const double time_step = window / sub_steps;
   // Contacts by Hertz' law are the shorter the faster they are.
-  if (laws_.model().law == ContactLaw::hertz)
+  if (laws_.model().law == ContactLaw::hertz) {
     sizes_.limit = step_limit(laws_, presented_, wall_materials_);
+  }
   check_time_step(sizes_.limit, time_step);
   set_drive(force);
   save_springs();
@@ -92,6 +93,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
     place_walls(time_ + step * time_step);
     if (beyond || walls_moved_far()) {
       check(now, time_step, step, sub_steps);
+      check_surfaces();  // what this list has noted would go with it
       sort_and_list(now, next, kept_places(), true);
       std::swap(now, next);
     }

@@ -8,6 +8,7 @@ namespace fluxpact {
 /// List pairs per particle against rebuilds: 0.15 diameters is near the best from a bed at rest to
 /// one that bubbles.
 inline constexpr double skin_per_diameter = 0.15;
+
 /// Pairs of the list name their law by one byte.
 inline void check_law_indices(const ContactLaws& laws) {
   if (laws.count() <= 256) return;

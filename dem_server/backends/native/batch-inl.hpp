@@ -8,6 +8,8 @@
 #define FLUXPACT_BATCH_INL_
 #endif
 
+#include <type_traits>
+
 #include "dem_server/backends/native/contact_force-inl.hpp"
 #include "dem_server/backends/native/contact_pass.hpp"
 #include "dem_server/backends/native/row_lanes-inl.hpp"
@@ -22,11 +24,14 @@ inline constexpr int width = lanes_of<Positions>;
 template <class Real>
 using Lanes = hn::Rebind<Real, Positions>;
 
-/// Signs for combine_rows: the first three numbers are differences, the fourth is a sum.
+/// Signs for combine_rows and combine_long_rows: of each four numbers, the fourth is a sum.
 template <class Real>
 struct Flip {
+  /// Differences.
   alignas(64) static constexpr Real difference[8] = {-Real(0), -Real(0), -Real(0), 0,
                                                      -Real(0), -Real(0), -Real(0), 0};
+  /// A difference, then a sum.
+  alignas(64) static constexpr Real motion[8] = {-Real(0), -Real(0), -Real(0), 0, 0, 0, 0, 0};
   alignas(64) static constexpr Real sum[8] = {0, 0, 0, 0, 0, 0, 0, 0};
 };
 
@@ -100,28 +105,71 @@ HWY_INLINE hn::Vec<Lanes<Real>> root_mass(double known, hn::Vec<Lanes<Real>> inv
   return hn::Sqrt(hn::Div(hn::Set(d, 1), inverse_mass));
 }
 
-/// Loads of a batch, one row of `Load` a lane.
+/// Loads of a batch, one row of `Load` a lane, on their way to the sums of the particles.
+///
+/// What the partner gets (`mirrored`) is the opposite force, but an equal lever force, since the
+/// arm points the other way as well.
 template <class Real, bool turning>
-struct LoadRows {
-  static constexpr int numbers = turning ? 8 : 4;
-  alignas(64) Real row[width][numbers];
-
-  HWY_INLINE explicit LoadRows(const ForceLanes<hn::Vec<Lanes<Real>>>& from) {
+class StoredRows {
+ public:
+  HWY_INLINE explicit StoredRows(const ForceLanes<hn::Vec<Lanes<Real>>>& from) {
     const Lanes<Real> d;
-    store_rows<numbers>(d, from.force.x, from.force.y, from.force.z, &row[0][0]);
+    store_rows<numbers>(d, from.force.x, from.force.y, from.force.z, &row_[0][0]);
     if constexpr (turning) {
-      store_rows<numbers>(d, from.lever.x, from.lever.y, from.lever.z, &row[0][4]);
+      store_rows<numbers>(d, from.lever.x, from.lever.y, from.lever.z, &row_[0][4]);
     }
   }
-  HWY_INLINE void add(int lane, Load<Real, turning>& to) const {
-    add_row<numbers, false>(row[lane], to.force);
+  /// To the places of all lanes, one after the other.
+  template <bool mirrored, class Place>
+  HWY_INLINE void add_to(Load<Real, turning>* sum, const Place& place) const {
+    for (int k = 0; k < width; ++k) {
+      Load<Real, turning>& to = sum[place(k)];
+      add_row<mirrored>(row_[k], to.force);
+      if constexpr (turning) add_row<false>(row_[k] + 4, to.lever);
+    }
   }
-  /// What the partner gets: the opposite force, but an equal lever force, since the arm points the
-  /// other way as well.
-  HWY_INLINE void add_mirrored(int lane, Load<Real, turning>& to) const {
-    add_row<numbers, true>(row[lane], to.force);
-  }
+
+ private:
+  static constexpr int numbers = turning ? 8 : 4;
+  alignas(64) Real row_[width][numbers];
 };
+
+/// The same where a register holds a whole row: the rows never go through memory.
+template <class Real>
+class RegisterRows {
+ public:
+  HWY_INLINE explicit RegisterRows(const ForceLanes<hn::Vec<Lanes<Real>>>& from) {
+    const Lanes<Real> d;
+    const auto zero = hn::Zero(d);
+    rows_ = transpose(d, Eight<V>{{from.force.x, from.force.y, from.force.z, zero},
+                                  {from.lever.x, from.lever.y, from.lever.z, zero}});
+  }
+  template <bool mirrored, class Place>
+  HWY_INLINE void add_to(Load<Real, true>* sum, const Place& place) const {
+    const Lanes<Real> d;
+    const auto mirror = hn::Load(d, Flip<Real>::motion);
+    const auto add = [&](V row, int k) HWY_ATTR {
+      Real* to = sum[place(k)].force;
+      hn::Store(hn::Add(hn::Load(d, to), mirrored ? hn::Xor(row, mirror) : row), d, to);
+    };
+    add(rows_.low.a, 0);
+    add(rows_.low.b, 1);
+    add(rows_.low.c, 2);
+    add(rows_.low.d, 3);
+    add(rows_.high.a, 4);
+    add(rows_.high.b, 5);
+    add(rows_.high.c, 6);
+    add(rows_.high.d, 7);
+  }
+
+ private:
+  using V = hn::Vec<Lanes<Real>>;
+  Eight<V> rows_;
+};
+
+template <class Real, bool turning>
+using LoadRows =
+    std::conditional_t<turning && width == 8, RegisterRows<Real>, StoredRows<Real, turning>>;
 
 /// The rows of the springs that a model has: which they are.
 struct SpringRows {

@@ -19,27 +19,80 @@ inline constexpr int fetch_ahead = 64;
 /// Which of the pairs of a block: inner ones act on both partners, the others on the holder only.
 enum class Kind { inner, outer, image };
 
-/// The vector from partner to holder, and the sum of the radii.
+/// The partners of each lane.
+template <class Real, bool turning>
+struct Partners {
+  const Body<Real, turning>* a[width];
+  const Body<Real, turning>* b[width];
+
+  /// Rows of them, from numbers that are `first` of each body.
+  template <class Number>
+  HWY_INLINE void rows(Number (Body<Real, turning>::*first)[3], const Number** row_a,
+                       const Number** row_b) const {
+    for (int k = 0; k < width; ++k) {
+      row_a[k] = a[k]->*first;
+      row_b[k] = b[k]->*first;
+    }
+  }
+};
+
+/// How the partners stand and move to each other: differences from partner to holder, and the sums
+/// of radii and of inverse masses.
+template <class Real>
+struct Relative {
+  Quad<hn::Vec<Positions>> apart;       // [m]
+  Quad<hn::Vec<Lanes<Real>>> velocity;  // [m/s]
+};
+
 template <class Real, bool turning, Kind kind>
-HWY_INLINE Quad<hn::Vec<Positions>> apart_of(const BlockPass<Real, turning>& pass,
-                                             const Pair* pairs, const Body<Real, turning>* const* a,
-                                             const Body<Real, turning>* const* b) {
+HWY_INLINE Relative<Real> between(const BlockPass<Real, turning>& pass, const Pair* pairs,
+                                  const Partners<Real, turning>& partners) {
   const Positions d;
   const double* first[width];
   const double* second[width];
-  for (int k = 0; k < width; ++k) {
-    first[k] = a[k]->position;
-    second[k] = b[k]->position;
+  partners.rows(&Body<Real, turning>::position, first, second);
+  Relative<Real> relative;
+  if constexpr (sizeof(Real) == sizeof(double)) {  // velocities follow positions in one row
+    const auto both = combine_long_rows(d, first, second, Flip<double>::difference);
+    relative = {both.low, both.high};
+  } else {
+    relative.apart = combine_rows(d, first, second, Flip<double>::difference);
   }
-  auto apart = combine_rows(d, first, second, Flip<double>::difference);
   if constexpr (kind == Kind::image) {
     for (int k = 0; k < width; ++k) first[k] = pass.shifts[pairs[k].shift];
     const auto shift = gather_rows(d, first);
+    auto& apart = relative.apart;
     apart.a = hn::Sub(apart.a, shift.a);
     apart.b = hn::Sub(apart.b, shift.b);
     apart.c = hn::Sub(apart.c, shift.c);
   }
-  return apart;
+  return relative;
+}
+
+/// Velocities, where they do not come with the positions, and spins.
+template <class Real, bool turning>
+HWY_INLINE void add_motion(const Partners<Real, turning>& partners, Quad<hn::Vec<Lanes<Real>>>& v,
+                           TouchLanes<hn::Vec<Lanes<Real>>>& touch) {
+  const Lanes<Real> d;
+  const Real* row_a[width];
+  const Real* row_b[width];
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    if constexpr (turning) {
+      partners.rows(&Body<Real, turning>::radius_spin, row_a, row_b);
+      const auto w = combine_rows(d, row_a, row_b, Flip<Real>::sum);
+      touch.radius_spin = {w.a, w.b, w.c};
+    }
+  } else {
+    partners.rows(&Body<Real, turning>::velocity, row_a, row_b);
+    if constexpr (turning) {
+      const auto both = combine_long_rows(d, row_a, row_b, Flip<Real>::motion);
+      v = both.low;
+      touch.radius_spin = {both.high.a, both.high.b, both.high.c};
+    } else {
+      v = combine_rows(d, row_a, row_b, Flip<Real>::difference);
+    }
+  }
+  touch.velocity = {v.a, v.b, v.c};
 }
 
 /// 1/R* from the radii of the holders and the sums.
@@ -62,45 +115,33 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
   const ContactModel& model = pass.laws->model;
   const Body<Real, turning>* mine = pass.now + pass.first;
   const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.now;
-  const Body<Real, turning>* a[width];
-  const Body<Real, turning>* b[width];
+  Partners<Real, turning> partners;
   for (int k = 0; k < width; ++k) {
-    a[k] = mine + pairs[k].mine;
-    b[k] = theirs + pairs[k].other;
+    partners.a[k] = mine + pairs[k].mine;
+    partners.b[k] = theirs + pairs[k].other;
   }
-  const auto apart = apart_of<Real, turning, kind>(pass, pairs, a, b);
-  const Gap<Real> gap = gap_between<Real>(apart, pass.beyond_contact, count);
+  auto relative = between<Real, turning, kind>(pass, pairs, partners);
+  const Gap<Real> gap = gap_between<Real>(relative.apart, pass.beyond_contact, count);
   const V zero = hn::Zero(d);
   if (hn::AllFalse(d, gap.near)) {
     store_springs<Real, turning>(model, {{zero, zero, zero}, {zero, zero, zero}, zero}, at,
                                  springs);
     return;
   }
-  const Real* row_a[width];
-  const Real* row_b[width];
-  for (int k = 0; k < width; ++k) {
-    row_a[k] = a[k]->velocity;
-    row_b[k] = b[k]->velocity;
-  }
-  const auto v = combine_rows(d, row_a, row_b, Flip<Real>::difference);
   auto touch = no_touch<Real>();
   touch.normal = gap.normal;
   touch.overlap = gap.overlap;
-  touch.velocity = {v.a, v.b, v.c};
-  touch.root_mass = root_mass<Real>(pass.root_masses.pair, v.d);
-  touch.inverse_radius = needs_curvature(model) ? curvature<Real>(a, apart.d) : zero;
+  add_motion(partners, relative.velocity, touch);
+  touch.root_mass = root_mass<Real>(pass.root_masses.pair, relative.velocity.d);
+  touch.inverse_radius =
+      needs_curvature(model) ? curvature<Real>(partners.a, relative.apart.d) : zero;
   RollLanes<Real> roll_a = no_roll<Real>();
   RollLanes<Real> roll_b = no_roll<Real>();
+  const bool rolls = turning && model.rolling != RollingLaw::none;
   if constexpr (turning) {
-    for (int k = 0; k < width; ++k) {
-      row_a[k] = a[k]->radius_spin;
-      row_b[k] = b[k]->radius_spin;
-    }
-    const auto w = combine_rows(d, row_a, row_b, Flip<Real>::sum);
-    touch.radius_spin = {w.a, w.b, w.c};
-    if (model.rolling != RollingLaw::none) {
-      roll_a = gather_roll(a);
-      roll_b = gather_roll(b);
+    if (rolls) {
+      roll_a = gather_roll(partners.a);
+      roll_b = gather_roll(partners.b);
       touch.spin = plus_scaled(roll_a.spin, hn::Set(d, Real(-1)), roll_b.spin);
       touch.inverse_inertia = hn::Add(roll_a.inverse_inertia, roll_b.inverse_inertia);
     }
@@ -110,18 +151,20 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pai
   contact_force<turning>(d, model, law_of(*pass.laws, pairs), touch,
                          hn::Set(d, static_cast<Real>(pass.spring_step)), spring, gap.near, out);
   store_springs<Real, turning>(model, spring, at, springs);
-  ForceLanes<V> partner = out;
-  if constexpr (turning) {
-    if (model.rolling != RollingLaw::none) {
-      out.lever = plus_scaled(out.lever, roll_a.inverse_radius, out.torque);
-      partner.lever = minus_scaled(partner.lever, roll_b.inverse_radius, out.torque);
-    }
+  const auto holder = [&](int k) { return pairs[k].mine; };
+  const auto partner = [&](int k) { return pairs[k].other; };
+  if (!rolls) {
+    const LoadRows<Real, turning> loads(out);
+    loads.template add_to<false>(pass.sum, holder);
+    if constexpr (kind == Kind::inner) loads.template add_to<true>(pass.sum, partner);
+    return;
   }
-  const LoadRows<Real, turning> loads(out);
-  for (int k = 0; k < width; ++k) loads.add(k, pass.sum[pairs[k].mine]);
+  ForceLanes<V> mirrored = out;
+  out.lever = plus_scaled(out.lever, roll_a.inverse_radius, out.torque);
+  LoadRows<Real, turning>(out).template add_to<false>(pass.sum, holder);
   if constexpr (kind == Kind::inner) {
-    const LoadRows<Real, turning> others(partner);
-    for (int k = 0; k < width; ++k) others.add_mirrored(k, pass.sum[pairs[k].other]);
+    mirrored.lever = minus_scaled(mirrored.lever, roll_b.inverse_radius, out.torque);
+    LoadRows<Real, turning>(mirrored).template add_to<true>(pass.sum, partner);
   }
 }
 

@@ -180,6 +180,72 @@ HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* seco
   return {hn::LoadU(d, sum[0]), hn::LoadU(d, sum[1]), hn::LoadU(d, sum[2]), hn::LoadU(d, sum[3])};
 }
 
+/// Eight vectors: of rows of eight numbers while they are read, of components afterwards.
+template <class V>
+struct Eight {
+  Quad<V> low, high;
+};
+
+#if HWY_MAX_BYTES >= 32
+
+/// Eight rows of eight numbers to components, or back.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Eight<V> transpose(D d, const Eight<V>& rows) {
+  const Quad<V>& p = rows.low;
+  const Quad<V>& q = rows.high;
+  if constexpr (sizeof(hn::TFromD<D>) == 8) {
+    // Pairs of rows to pairs of numbers, then blocks of two numbers as a matrix of 4 x 4.
+    const auto blocks = [d](V r0, V r1, V r2, V r3) HWY_ATTR {
+      const V low02 = hn::ConcatLowerLower(d, r2, r0);
+      const V low13 = hn::ConcatLowerLower(d, r3, r1);
+      const V high02 = hn::ConcatUpperUpper(d, r2, r0);
+      const V high13 = hn::ConcatUpperUpper(d, r3, r1);
+      return Quad<V>{hn::OddEvenBlocks(hn::SwapAdjacentBlocks(low13), low02),
+                     hn::OddEvenBlocks(low13, hn::SwapAdjacentBlocks(low02)),
+                     hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high13), high02),
+                     hn::OddEvenBlocks(high13, hn::SwapAdjacentBlocks(high02))};
+    };
+    const auto even = blocks(hn::InterleaveLower(d, p.a, p.b), hn::InterleaveLower(d, p.c, p.d),
+                             hn::InterleaveLower(d, q.a, q.b), hn::InterleaveLower(d, q.c, q.d));
+    const auto odd = blocks(hn::InterleaveUpper(d, p.a, p.b), hn::InterleaveUpper(d, p.c, p.d),
+                            hn::InterleaveUpper(d, q.a, q.b), hn::InterleaveUpper(d, q.c, q.d));
+    return {{even.a, odd.a, even.b, odd.b}, {even.c, odd.c, even.d, odd.d}};
+  } else {
+    const Quad<V> first = transpose(d, p);   // components 0 to 3 | 4 to 7 of rows 0 to 3
+    const Quad<V> second = transpose(d, q);  // of rows 4 to 7
+    return {
+        {hn::ConcatLowerLower(d, second.a, first.a), hn::ConcatLowerLower(d, second.b, first.b),
+         hn::ConcatLowerLower(d, second.c, first.c), hn::ConcatLowerLower(d, second.d, first.d)},
+        {hn::ConcatUpperUpper(d, second.a, first.a), hn::ConcatUpperUpper(d, second.b, first.b),
+         hn::ConcatUpperUpper(d, second.c, first.c), hn::ConcatUpperUpper(d, second.d, first.d)}};
+  }
+}
+
+#endif
+
+/// The same of rows of eight numbers, for eight signs.
+template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Eight<V> combine_long_rows(D d, const T* const* first, const T* const* second,
+                                      const T* flip) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (lanes_of<D> == 8) {
+    const V sign = hn::Load(d, flip);
+    const auto sum = [&](int k) HWY_ATTR {
+      return hn::Add(hn::LoadU(d, first[k]), hn::Xor(sign, hn::LoadU(d, second[k])));
+    };
+    return transpose(d,
+                     Eight<V>{{sum(0), sum(1), sum(2), sum(3)}, {sum(4), sum(5), sum(6), sum(7)}});
+  }
+#endif
+  const T* rest_first[lanes_of<D>];
+  const T* rest_second[lanes_of<D>];
+  for (int lane = 0; lane < lanes_of<D>; ++lane) {
+    rest_first[lane] = first[lane] + 4;
+    rest_second[lane] = second[lane] + 4;
+  }
+  return {combine_rows(d, first, second, flip), combine_rows(d, rest_first, rest_second, flip + 4)};
+}
+
 /// Components of the rows at the given addresses.
 template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> gather_rows(D d, const T* const* row) {
@@ -226,20 +292,16 @@ HWY_INLINE void store_rows(D d, V x, V y, V z, T* HWY_RESTRICT rows) {
   }
 }
 
-/// sum += row of so many numbers (4 or 8), or, if `mirrored`, its first four numbers change sign.
-template <int numbers, bool mirrored, class T>
+/// sum += row, or −= if `mirrored`.
+template <bool mirrored, class T>
 HWY_INLINE void add_row(const T* HWY_RESTRICT row, T* HWY_RESTRICT sum) {
 #if HWY_MAX_BYTES >= 32
-  constexpr int most = HWY_MAX_BYTES / static_cast<int>(sizeof(T));
-  const hn::FixedTag<T, (numbers < most ? numbers : most)> d;
-  alignas(64) static constexpr T mirror[8] = {-T(0), -T(0), -T(0), -T(0), 0, 0, 0, 0};
-  for (int at = 0; at < numbers; at += lanes_of<decltype(d)>) {
-    auto value = hn::Load(d, row + at);
-    if constexpr (mirrored) value = hn::Xor(value, hn::Load(d, mirror + at));
-    hn::Store(hn::Add(hn::Load(d, sum + at), value), d, sum + at);
-  }
+  const hn::FixedTag<T, 4> d;
+  const auto before = hn::Load(d, sum);
+  const auto value = hn::Load(d, row);
+  hn::Store(mirrored ? hn::Sub(before, value) : hn::Add(before, value), d, sum);
 #else
-  for (int c = 0; c < numbers; ++c) sum[c] += mirrored && c < 4 ? -row[c] : row[c];
+  for (int c = 0; c < 4; ++c) sum[c] += mirrored ? -row[c] : row[c];
 #endif
 }
 

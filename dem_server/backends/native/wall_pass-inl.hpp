@@ -60,7 +60,7 @@ HWY_INLINE void pass_walls(const BlockPass<Real, turning>& pass,
     }
   }
   const LoadRows<Real, turning> loads(out);
-  for (int k = 0; k < count; ++k) loads.add(k, pass.sum[contacts[k].mine]);
+  loads.template add_to<false>(pass.sum, [&](int k) { return contacts[k].mine; });
 }
 
 /// Contacts with the plane sides of the domain.

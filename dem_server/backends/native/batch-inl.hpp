@@ -44,40 +44,31 @@ HWY_INLINE auto to_real(hn::Vec<Positions> v) {
   }
 }
 
-/// How the surfaces of a batch stand to each other; lanes that are not near hold nothing of use.
+/// How the surfaces of a batch stand to each other.
 template <class Real>
 struct Gap {
   using V = hn::Vec<Lanes<Real>>;
   Lanes3<V> normal;
-  V overlap;                   // [m]; negative where the surfaces are apart
-  hn::Mask<Lanes<Real>> near;  // within the reach of the law
+  V overlap;  // [m]; negative where the surfaces are apart
 };
 
 /// From the vector between the centres and the sum R of the radii. In float the overlap is
 /// (R² - d²)/(R + d) with the numerator in double, since the difference of two lengths would keep
 /// few digits.
 template <class Real>
-HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart, double beyond_contact,
-                                 int count) {
+HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart) {
   const Lanes<Real> d;
   const auto radii = apart.d;
   const auto square =
       hn::MulAdd(apart.a, apart.a, hn::MulAdd(apart.b, apart.b, hn::Mul(apart.c, apart.c)));
-  const auto difference = to_real<Real>(hn::MulSub(radii, radii, square));
   const auto distance = hn::Sqrt(to_real<Real>(square));
   const auto inverse = hn::Div(hn::Set(d, 1), distance);
   Gap<Real> gap;
   if constexpr (sizeof(Real) == sizeof(double)) {
     gap.overlap = hn::Sub(radii, distance);
   } else {
+    const auto difference = to_real<Real>(hn::MulSub(radii, radii, square));
     gap.overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
-  }
-  gap.near = hn::FirstN(d, count);
-  if (beyond_contact == 0) {
-    gap.near = hn::And(gap.near, hn::Gt(difference, hn::Zero(d)));
-  } else {
-    const auto reach = hn::Set(d, static_cast<Real>(-beyond_contact));
-    gap.near = hn::And(gap.near, hn::Gt(gap.overlap, reach));
   }
   gap.normal = {hn::Mul(to_real<Real>(apart.a), inverse), hn::Mul(to_real<Real>(apart.b), inverse),
                 hn::Mul(to_real<Real>(apart.c), inverse)};

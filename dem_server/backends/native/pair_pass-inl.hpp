@@ -106,66 +106,118 @@ HWY_INLINE hn::Vec<Lanes<Real>> curvature(const Body<Real, turning>* const* a,
   return to_real<Real>(hn::Div(sum, hn::Mul(own, hn::Sub(sum, own))));
 }
 
-/// One batch of pairs.
-template <class Real, bool turning, Kind kind>
-HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const Pair* pairs, int count,
-                           int at, Springs<Real>& springs) {
-  const Lanes<Real> d;
+/// A batch of pairs on its way through the three steps.
+template <class Real>
+struct PairBatch {
   using V = hn::Vec<Lanes<Real>>;
+  const Pair* pairs = nullptr;
+  int at = 0;     // of the first in the list
+  int count = 0;  // of pairs; the other lanes repeat one
+  bool near = false;
+  TouchLanes<V> touch;
+  RollLanes<Real> roll_a, roll_b;  // with a rolling law
+  ForceLanes<V> out;
+};
+
+/// Many batches go through each step before the next: the chain of operations in one batch is long,
+/// and the processor can only look ahead into another if the steps are short.
+inline constexpr int batches_at_once = 8;
+
+template <class Real>
+HWY_INLINE hn::Mask<Lanes<Real>> near_lanes(const PairBatch<Real>& batch, double beyond_contact) {
+  const Lanes<Real> d;
+  const auto reach = hn::Set(d, static_cast<Real>(-beyond_contact));
+  return hn::And(hn::FirstN(d, batch.count), hn::Gt(batch.touch.overlap, reach));
+}
+
+/// First step: how the partners stand and move to each other.
+template <class Real, bool turning, Kind kind>
+HWY_INLINE void approach(const BlockPass<Real, turning>& pass, PairBatch<Real>& batch) {
   const ContactModel& model = pass.laws->model;
   const Body<Real, turning>* mine = pass.now + pass.first;
   const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.now;
   Partners<Real, turning> partners;
   for (int k = 0; k < width; ++k) {
-    partners.a[k] = mine + pairs[k].mine;
-    partners.b[k] = theirs + pairs[k].other;
+    partners.a[k] = mine + batch.pairs[k].mine;
+    partners.b[k] = theirs + batch.pairs[k].other;
   }
-  auto relative = between<Real, turning, kind>(pass, pairs, partners);
-  const Gap<Real> gap = gap_between<Real>(relative.apart, pass.beyond_contact, count);
-  const V zero = hn::Zero(d);
-  if (hn::AllFalse(d, gap.near)) {
-    store_springs<Real, turning>(model, {{zero, zero, zero}, {zero, zero, zero}, zero}, at,
-                                 springs);
-    return;
-  }
-  auto touch = no_touch<Real>();
+  auto relative = between<Real, turning, kind>(pass, batch.pairs, partners);
+  const Gap<Real> gap = gap_between<Real>(relative.apart);
+  auto& touch = batch.touch;
   touch.normal = gap.normal;
   touch.overlap = gap.overlap;
   add_motion(partners, relative.velocity, touch);
   touch.root_mass = root_mass<Real>(pass.root_masses.pair, relative.velocity.d);
-  touch.inverse_radius =
-      needs_curvature(model) ? curvature<Real>(partners.a, relative.apart.d) : zero;
-  RollLanes<Real> roll_a = no_roll<Real>();
-  RollLanes<Real> roll_b = no_roll<Real>();
-  const bool rolls = turning && model.rolling != RollingLaw::none;
+  if (needs_curvature(model)) {
+    touch.inverse_radius = curvature<Real>(partners.a, relative.apart.d);
+  }
   if constexpr (turning) {
-    if (rolls) {
-      roll_a = gather_roll(partners.a);
-      roll_b = gather_roll(partners.b);
-      touch.spin = plus_scaled(roll_a.spin, hn::Set(d, Real(-1)), roll_b.spin);
-      touch.inverse_inertia = hn::Add(roll_a.inverse_inertia, roll_b.inverse_inertia);
+    if (model.rolling != RollingLaw::none) {
+      const hn::Vec<Lanes<Real>> minus = hn::Set(Lanes<Real>(), Real(-1));
+      batch.roll_a = gather_roll(partners.a);
+      batch.roll_b = gather_roll(partners.b);
+      touch.spin = plus_scaled(batch.roll_a.spin, minus, batch.roll_b.spin);
+      touch.inverse_inertia = hn::Add(batch.roll_a.inverse_inertia, batch.roll_b.inverse_inertia);
     }
   }
-  SpringLanes<V> spring = load_springs<Real, turning>(model, springs, at);
-  ForceLanes<V> out = no_force<Real>();
-  contact_force<turning>(d, model, law_of(*pass.laws, pairs), touch,
-                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, gap.near, out);
-  store_springs<Real, turning>(model, spring, at, springs);
-  const auto holder = [&](int k) { return pairs[k].mine; };
-  const auto partner = [&](int k) { return pairs[k].other; };
-  if (!rolls) {
-    const LoadRows<Real, turning> loads(out);
-    loads.template add_to<false>(pass.sum, holder);
-    if constexpr (kind == Kind::inner) loads.template add_to<true>(pass.sum, partner);
+}
+
+/// Second step: springs and forces.
+template <class Real, bool turning>
+HWY_INLINE void respond(const BlockPass<Real, turning>& pass, PairBatch<Real>& batch,
+                        Springs<Real>& springs) {
+  const Lanes<Real> d;
+  const ContactModel& model = pass.laws->model;
+  const auto near = near_lanes(batch, pass.beyond_contact);
+  batch.near = !hn::AllFalse(d, near);
+  if (!batch.near) {
+    const auto zero = hn::Zero(d);
+    store_springs<Real, turning>(model, {{zero, zero, zero}, {zero, zero, zero}, zero}, batch.at,
+                                 springs);
     return;
   }
-  ForceLanes<V> mirrored = out;
-  out.lever = plus_scaled(out.lever, roll_a.inverse_radius, out.torque);
-  LoadRows<Real, turning>(out).template add_to<false>(pass.sum, holder);
-  if constexpr (kind == Kind::inner) {
-    mirrored.lever = minus_scaled(mirrored.lever, roll_b.inverse_radius, out.torque);
-    LoadRows<Real, turning>(mirrored).template add_to<true>(pass.sum, partner);
+  auto spring = load_springs<Real, turning>(model, springs, batch.at);
+  auto out = no_force<Real>();
+  contact_force<turning>(d, model, law_of(*pass.laws, batch.pairs), batch.touch,
+                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, near, out);
+  store_springs<Real, turning>(model, spring, batch.at, springs);
+  batch.out.force = out.force;
+  if constexpr (turning) {
+    batch.out.lever = out.lever;
+    if (model.rolling != RollingLaw::none) batch.out.torque = out.torque;
   }
+}
+
+/// Third step: to the sums of the particles.
+template <class Real, bool turning, Kind kind>
+HWY_INLINE void hand_over(const BlockPass<Real, turning>& pass, const PairBatch<Real>& batch) {
+  if (!batch.near) return;
+  const Pair* pairs = batch.pairs;
+  const auto holder = [&](int k) { return pairs[k].mine; };
+  const auto partner = [&](int k) { return pairs[k].other; };
+  if constexpr (turning) {
+    if (pass.laws->model.rolling != RollingLaw::none) {
+      ForceLanes<hn::Vec<Lanes<Real>>> own = batch.out;
+      own.lever = plus_scaled(own.lever, batch.roll_a.inverse_radius, own.torque);
+      LoadRows<Real, turning>(own).template add_to<false>(pass.sum, holder);
+      if constexpr (kind == Kind::inner) {
+        own.lever = minus_scaled(batch.out.lever, batch.roll_b.inverse_radius, own.torque);
+        LoadRows<Real, turning>(own).template add_to<true>(pass.sum, partner);
+      }
+      return;
+    }
+  }
+  const LoadRows<Real, turning> loads(batch.out);
+  loads.template add_to<false>(pass.sum, holder);
+  if constexpr (kind == Kind::inner) loads.template add_to<true>(pass.sum, partner);
+}
+
+template <class Real, bool turning, Kind kind>
+HWY_INLINE void pass_batches(const BlockPass<Real, turning>& pass, PairBatch<Real>* batches,
+                             int count, Springs<Real>& springs) {
+  for (int b = 0; b < count; ++b) approach<Real, turning, kind>(pass, batches[b]);
+  for (int b = 0; b < count; ++b) respond<Real, turning>(pass, batches[b], springs);
+  for (int b = 0; b < count; ++b) hand_over<Real, turning, kind>(pass, batches[b]);
 }
 
 template <class Real, bool turning, Kind kind>
@@ -173,20 +225,28 @@ HWY_INLINE void pass_list(const BlockPass<Real, turning>& pass, const std::vecto
                           Springs<Real>& springs) {
   const Body<Real, turning>* theirs = kind == Kind::inner ? pass.now + pass.first : pass.now;
   const int size = static_cast<int>(list.size());
-  const int whole = size / width * width;
-  for (int at = 0; at < whole; at += width) {
-    const int ahead = std::min(at + fetch_ahead, whole - width);
-    for (int k = 0; k < width; ++k) {
-      const Body<Real, turning>* partner = theirs + list[ahead + k].other;
-      hwy::Prefetch(partner);
-      if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
+  PairBatch<Real> batches[batches_at_once];
+  Pair rest[width];
+  for (int at = 0; at < size;) {
+    int count = 0;
+    for (; count < batches_at_once && at < size; ++count, at += width) {
+      PairBatch<Real>& batch = batches[count];
+      batch.at = at;
+      batch.count = std::min(width, size - at);
+      batch.pairs = list.data() + at;
+      if (batch.count < width) {  // the last pair again where there is none
+        for (int k = 0; k < width; ++k) rest[k] = list[std::min(at + k, size - 1)];
+        batch.pairs = rest;
+      }
+      const int ahead = std::max(std::min(at + fetch_ahead, size - width), 0);
+      for (int k = 0; k < std::min(width, size); ++k) {
+        const Body<Real, turning>* partner = theirs + list[ahead + k].other;
+        hwy::Prefetch(partner);
+        if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
+      }
     }
-    pass_pairs<Real, turning, kind>(pass, list.data() + at, width, at, springs);
+    pass_batches<Real, turning, kind>(pass, batches, count, springs);
   }
-  if (whole == size) return;
-  Pair rest[width];  // the last pair again where there is none; FirstN masks it
-  for (int k = 0; k < width; ++k) rest[k] = list[std::min(whole + k, size - 1)];
-  pass_pairs<Real, turning, kind>(pass, rest, size - whole, whole, springs);
 }
 
 }  // namespace fluxpact::HWY_NAMESPACE

@@ -75,15 +75,15 @@ HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart) {
   return gap;
 }
 
-/// The law of each lane.
-template <class Real, class Contact>
+/// The law of each lane, by the index that index(lane) gives.
+template <class Real, class IndexOf>
 HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table,
-                                                 const Contact* contacts) {
+                                                 const IndexOf& index_of) {
   const Lanes<Real> d;
   if (table.one_law) return load_law(d, table, table.any);
   const hn::RebindToSigned<decltype(d)> integers;
   alignas(64) hn::TFromD<decltype(integers)> index[width];
-  for (int k = 0; k < width; ++k) index[k] = contacts[k].law;
+  for (int k = 0; k < width; ++k) index[k] = index_of(k);
   return load_law(d, table, hn::Load(integers, index));
 }
 
@@ -162,58 +162,40 @@ template <class Real, bool turning>
 using LoadRows =
     std::conditional_t<turning && width == 8, RegisterRows<Real>, StoredRows<Real, turning>>;
 
-/// The rows of the springs that a model has: which they are.
-struct SpringRows {
-  int rolling = -1;
-  int bridge = -1;
-};
-
-template <bool turning>
-HWY_INLINE SpringRows spring_rows(const ContactModel& model) {
-  SpringRows rows;
-  int next = turning ? 3 : 0;
-  if (model.rolling == RollingLaw::spring_dashpot) {
-    rows.rolling = next;
-    next += 3;
-  }
-  if (model.cohesion == CohesionLaw::liquid_bridge || model.cohesion == CohesionLaw::jkr) {
-    rows.bridge = next;
-  }
-  return rows;
-}
-
-template <class Real, bool turning>
+/// The springs of a batch, those of each lane at `springs`.
+template <class Real>
 HWY_INLINE SpringLanes<hn::Vec<Lanes<Real>>> load_springs(const ContactModel& model,
-                                                          const Springs<Real>& springs, int at) {
+                                                          SpringRow<Real>* const* springs) {
   const Lanes<Real> d;
   const auto zero = hn::Zero(d);
+  const int rows = spring_rows(model);
   SpringLanes<hn::Vec<Lanes<Real>>> lanes{{zero, zero, zero}, {zero, zero, zero}, zero};
-  const auto three = [&](int row) HWY_ATTR {
-    return Lanes3<hn::Vec<Lanes<Real>>>{hn::LoadU(d, springs.row(row) + at),
-                                        hn::LoadU(d, springs.row(row + 1) + at),
-                                        hn::LoadU(d, springs.row(row + 2) + at)};
-  };
-  if constexpr (turning) lanes.tangential = three(0);
-  const SpringRows rows = spring_rows<turning>(model);
-  if (rows.rolling >= 0) lanes.rolling = three(rows.rolling);
-  if (rows.bridge >= 0) lanes.bridge = hn::LoadU(d, springs.row(rows.bridge) + at);
+  if (rows == 0) return lanes;
+  const auto first = gather_rows(d, [&](int k) { return springs[k][0].number; });
+  lanes.tangential = {first.a, first.b, first.c};
+  lanes.bridge = first.d;
+  if (rows == 1) return lanes;
+  const auto second = gather_rows(d, [&](int k) { return springs[k][1].number; });
+  lanes.rolling = {second.a, second.b, second.c};
   return lanes;
 }
 
-template <class Real, bool turning>
+/// Back to the rows of the first `count` lanes.
+template <class Real>
 HWY_INLINE void store_springs(const ContactModel& model,
-                              const SpringLanes<hn::Vec<Lanes<Real>>>& lanes, int at,
-                              Springs<Real>& springs) {
+                              const SpringLanes<hn::Vec<Lanes<Real>>>& lanes, int count,
+                              SpringRow<Real>* const* springs) {
+  using V = hn::Vec<Lanes<Real>>;
   const Lanes<Real> d;
-  const auto three = [&](const Lanes3<hn::Vec<Lanes<Real>>>& value, int row) HWY_ATTR {
-    hn::StoreU(value.x, d, springs.row(row) + at);
-    hn::StoreU(value.y, d, springs.row(row + 1) + at);
-    hn::StoreU(value.z, d, springs.row(row + 2) + at);
-  };
-  if constexpr (turning) three(lanes.tangential, 0);
-  const SpringRows rows = spring_rows<turning>(model);
-  if (rows.rolling >= 0) three(lanes.rolling, rows.rolling);
-  if (rows.bridge >= 0) hn::StoreU(lanes.bridge, d, springs.row(rows.bridge) + at);
+  const int rows = spring_rows(model);
+  if (rows == 0) return;
+  const Lanes3<V>& t = lanes.tangential;
+  scatter_rows(d, Quad<V>{t.x, t.y, t.z, lanes.bridge}, count,
+               [&](int k) { return springs[k][0].number; });
+  if (rows == 1) return;
+  const Lanes3<V>& r = lanes.rolling;
+  scatter_rows(d, Quad<V>{r.x, r.y, r.z, hn::Zero(d)}, count,
+               [&](int k) { return springs[k][1].number; });
 }
 
 /// True if the force depends on the radii apart from the overlap.
@@ -253,11 +235,8 @@ HWY_INLINE RollLanes<Real> no_roll() {
 template <class Real>
 HWY_INLINE RollLanes<Real> gather_roll(const Body<Real, true>* const* bodies) {
   const Lanes<Real> d;
-  const Real* row[width];
-  for (int k = 0; k < width; ++k) row[k] = bodies[k]->radius_spin;
-  const auto w = gather_rows(d, row);
-  for (int k = 0; k < width; ++k) row[k] = bodies[k]->velocity;
-  const auto v = gather_rows(d, row);
+  const auto w = gather_rows(d, [&](int k) { return bodies[k]->radius_spin; });
+  const auto v = gather_rows(d, [&](int k) { return bodies[k]->velocity; });
   return {scaled(Lanes3<hn::Vec<Lanes<Real>>>{w.a, w.b, w.c}, w.d), w.d,
           hn::Mul(v.d, hn::Mul(w.d, w.d))};
 }

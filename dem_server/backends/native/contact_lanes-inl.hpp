@@ -41,7 +41,7 @@ struct LawLanes {
   V attraction, bridge_shape, bridge_rupture;
 };
 
-/// What a contact remembers (spring_numbers); parts that the model does not have are neither read
+/// What a contact remembers (spring_rows); parts that the model does not have are neither read
 /// nor written.
 template <class V>
 struct SpringLanes {

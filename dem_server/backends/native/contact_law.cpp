@@ -158,9 +158,9 @@ double damping_coefficient(const PairLaw& law, double effective_mass) {
   return law[LawColumn::damping] * std::sqrt(effective_mass);
 }
 
-int spring_numbers(const ContactModel& model) {
-  return (model.friction ? 3 : 0) + (model.rolling == RollingLaw::spring_dashpot ? 3 : 0) +
-         (outlasts_touch(model.cohesion) ? 1 : 0);
+int spring_rows(const ContactModel& model) {
+  if (model.rolling == RollingLaw::spring_dashpot) return 2;
+  return model.friction || outlasts_touch(model.cohesion) ? 1 : 0;
 }
 
 ContactLaws::ContactLaws(const ParticleSettings& settings) {

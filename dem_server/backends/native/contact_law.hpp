@@ -19,10 +19,10 @@ struct ContactModel {
   bool friction = false;  ///< some pair has friction or the scene a rolling law: spins are followed
 };
 
-/// Numbers of memory that a contact keeps between two steps, zero when the surfaces meet anew, in
-/// this order: 3 of the tangential spring [m] (with friction), 3 of the rolling spring [rad]
-/// (spring_dashpot), 1 that tells if a bridge or an adhesive contact holds (liquid_bridge, jkr).
-int spring_numbers(const ContactModel& model);
+/// Rows of four numbers that a contact keeps between two steps, zero when the surfaces meet anew:
+/// first the tangential spring [m] and whether a bridge or an adhesive contact holds (with
+/// friction, liquid_bridge or jkr), then the rolling spring [rad] and 0 (spring_dashpot).
+int spring_rows(const ContactModel& model);
 
 /// What the force of a contact reads, one number a column; m* = m_i m_j/(m_i + m_j) and
 /// R* = r_i r_j/(r_i + r_j) belong to the two particles.

@@ -16,9 +16,8 @@ struct Sources {
   const Resorting& resorting;
   const ContactList<Real>* before;
   std::array<Vector3, 27> shifts;
-  int numbers;   // of the springs of a contact
-  int vectors;   // of these the first, which belong to vectors seen from the holder
-  double reach;  // [m] between surfaces, within which a pair is listed
+  int spring_rows;  // of each contact
+  double reach;     // [m] between surfaces, within which a pair is listed
 
   int law(const ContactList<Real>& list, int i, int other_material) const {
     return scope.laws.index(material_of_row[list.row[i]], other_material);
@@ -35,7 +34,7 @@ template <class Real>
 struct Held {
   const Springs<Real>* springs = nullptr;
   int contact = 0;
-  Real sign = 1;  // -1 if the partner held it
+  bool mirrored = false;  // the partner held it
 };
 
 int find_pair(const std::vector<Pair>& pairs, int mine, int other, int shift) {
@@ -52,19 +51,20 @@ Held<Real> find_springs(const ContactList<Real>& list, const FormerPair& pair) {
   const int holder = list.blocks.holding(pair.i);
   const int first = list.blocks.first(holder);
   const ContactBlock<Real>& block = list.block[holder];
-  const auto held = [](const Springs<Real>& springs, int contact, Real sign) {
-    return contact < 0 ? Held<Real>{} : Held<Real>{&springs, contact, sign};
+  const auto held = [](const Springs<Real>& springs, int contact, bool mirrored) {
+    return contact < 0 ? Held<Real>{} : Held<Real>{&springs, contact, mirrored};
   };
   if (pair.shift != Shift::none) {
-    return held(block.image_springs, find_pair(block.image, pair.i - first, pair.j, pair.shift), 1);
+    return held(block.image_springs, find_pair(block.image, pair.i - first, pair.j, pair.shift),
+                false);
   }
   if (list.blocks.holding(pair.j) != holder) {
-    return held(block.outer_springs, find_pair(block.outer, pair.i - first, pair.j, pair.shift), 1);
+    return held(block.outer_springs, find_pair(block.outer, pair.i - first, pair.j, pair.shift),
+                false);
   }
   const int low = std::min(pair.i, pair.j) - first;
   const int high = std::max(pair.i, pair.j) - first;
-  return held(block.inner_springs, find_pair(block.inner, low, high, pair.shift),
-              pair.i < pair.j ? Real(1) : Real(-1));
+  return held(block.inner_springs, find_pair(block.inner, low, high, pair.shift), pair.i > pair.j);
 }
 
 /// The springs that a pair had in the list before.
@@ -83,14 +83,11 @@ Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int 
                       {old_i, old_j, Shift::code(periods[0], periods[1], periods[2])});
 }
 
-template <class Real, bool turning>
-void carry(const Sources<Real, turning>& from, const Held<Real>& held, int contact,
-           Springs<Real>& springs) {
+template <class Real>
+void carry(const Held<Real>& held, int contact, Springs<Real>& springs) {
   if (held.springs == nullptr) return;
-  for (int n = 0; n < from.numbers; ++n) {
-    const Real sign = n < from.vectors ? held.sign : Real(1);
-    springs.row(n)[contact] = sign * held.springs->row(n)[held.contact];
-  }
+  if ((held.springs->held[held.contact / 8] >> (held.contact % 8) & 1) == 0) return;
+  springs.carry(*held.springs, held.contact, held.mirrored, contact);
 }
 
 /// Springs of the pairs of a new list; `first` and `base` turn its places into those of all
@@ -98,12 +95,12 @@ void carry(const Sources<Real, turning>& from, const Held<Real>& held, int conta
 template <class Real, bool turning>
 void fill_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int first,
                   int base, Springs<Real>& springs) {
-  springs.reset(static_cast<int>(pairs.size()), from.numbers);
-  if (from.before == nullptr || from.numbers == 0) return;
+  springs.reset(static_cast<int>(pairs.size()), from.spring_rows);
+  if (from.before == nullptr || from.spring_rows == 0) return;
   for (int contact = 0; contact < springs.contacts; ++contact) {
     const Pair& pair = pairs[contact];
     const Held<Real> held = former_springs(from, first + pair.mine, base + pair.other, pair.shift);
-    carry(from, held, contact, springs);
+    carry(held, contact, springs);
   }
 }
 
@@ -162,7 +159,7 @@ void carry_plane_spring(const Sources<Real, turning>& from, int place, int side,
   for (; held != block.planes.end() && held->mine == mine; ++held) {
     if (held->side != side) continue;
     const int at = static_cast<int>(held - block.planes.begin());
-    carry(from, Held<Real>{&block.plane_springs, at, 1}, contact, springs);
+    springs.carry(block.plane_springs, at, false, contact);
   }
 }
 
@@ -186,8 +183,8 @@ void find_planes(const Sources<Real, turning>& from, int index, const ContactLis
                               static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(law)});
     }
   }
-  block.plane_springs.reset(static_cast<int>(block.planes.size()), from.numbers);
-  if (from.before == nullptr || from.numbers == 0) return;
+  block.plane_springs.reset(static_cast<int>(block.planes.size()), from.spring_rows);
+  if (from.before == nullptr || from.spring_rows == 0) return;
   for (int contact = 0; contact < block.plane_springs.contacts; ++contact) {
     const NearPlane& near = block.planes[contact];
     carry_plane_spring(from, first + near.mine, near.side, contact, block.plane_springs);
@@ -250,8 +247,8 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
       carry_touches(from, from.resorting.previous[i], i - first, contacts);
     }
   }
-  contacts.springs.reset(static_cast<int>(contacts.touches.size()), from.numbers);
-  if (from.numbers == 0) return;
+  contacts.springs.reset(static_cast<int>(contacts.touches.size()), from.spring_rows);
+  if (from.spring_rows == 0) return;
   int contact = 0;
   for (const std::uint16_t mine : contacts.near) {
     const int old = from.before != nullptr ? from.resorting.previous[first + mine] : -1;
@@ -260,7 +257,7 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
     const SurfaceContacts<Real>& held = from.before->block[holder].surfaces;
     const TouchRange range = touches_of(held.touches, old - from.before->blocks.first(holder));
     for (int k = range.first; k < range.last; ++k) {
-      carry(from, Held<Real>{&held.springs, k, 1}, contact++, contacts.springs);
+      contacts.springs.carry(held.springs, k, false, contact++);
     }
   }
 }
@@ -299,11 +296,6 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                        const std::vector<int>& material, const SizeLevels& levels,
                        const Resorting& resorting, const ContactList<Real>* before,
                        ContactList<Real>& list) {
-  const ContactModel& model = scope.laws.model();
-  const int numbers = spring_numbers(model);
-  // The last number of a bridge or an adhesive contact tells that it holds.
-  const bool flag =
-      model.cohesion == CohesionLaw::liquid_bridge || model.cohesion == CohesionLaw::jkr;
   const Sources<Real, turning> from{scope,
                                     spheres,
                                     material,
@@ -311,8 +303,7 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                                     resorting,
                                     before,
                                     shift_vectors(scope.domain),
-                                    numbers,
-                                    flag ? numbers - 1 : numbers,
+                                    spring_rows(scope.laws.model()),
                                     scope.skin + scope.beyond_contact};
   list.block.resize(list.blocks.count());
   mark_places(from, list);

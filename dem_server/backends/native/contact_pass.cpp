@@ -1,6 +1,7 @@
 #include "dem_server/backends/native/contact_pass.hpp"
 
 #include <cmath>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dem_server/backends/native/contact_pass.cpp"
@@ -15,7 +16,7 @@ namespace fluxpact::HWY_NAMESPACE {
 
 template <class Real, bool turning>
 HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
-  std::fill(pass.sum, pass.sum + (pass.last - pass.first), Load<Real, turning>{});
+  std::memset(pass.sum, 0, sizeof(*pass.sum) * (pass.last - pass.first));
   ContactBlock<Real>& contacts = *pass.contacts;
   pass_list<Real, turning, Kind::inner>(pass, contacts.inner, contacts.inner_springs);
   pass_list<Real, turning, Kind::outer>(pass, contacts.outer, contacts.outer_springs);

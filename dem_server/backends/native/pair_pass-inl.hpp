@@ -8,6 +8,8 @@
 
 #include <hwy/cache_control.h>
 
+#include <bit>
+
 #include "dem_server/backends/native/batch-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,17 +26,30 @@ template <class Real, bool turning>
 struct Partners {
   const Body<Real, turning>* a[width];
   const Body<Real, turning>* b[width];
-
-  /// Rows of them, from numbers that are `first` of each body.
-  template <class Number>
-  HWY_INLINE void rows(Number (Body<Real, turning>::*first)[3], const Number** row_a,
-                       const Number** row_b) const {
-    for (int k = 0; k < width; ++k) {
-      row_a[k] = a[k]->*first;
-      row_b[k] = b[k]->*first;
-    }
-  }
 };
+
+/// Fills in the partners of a batch. (Not a constructor, nor by value: that would copy through
+/// memory.)
+template <class Real, bool turning, Kind kind>
+HWY_INLINE void find_partners(const BlockPass<Real, turning>& pass, const Pair* const* pairs,
+                              Partners<Real, turning>& partners) {
+  const Body<Real, turning>* mine = pass.now + pass.first;
+  const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.now;
+  for (int k = 0; k < width; ++k) {
+    partners.a[k] = mine + pairs[k]->mine;
+    partners.b[k] = theirs + pairs[k]->other;
+  }
+}
+
+/// The partners to where their images are.
+template <class Real, bool turning>
+HWY_INLINE void shift(const BlockPass<Real, turning>& pass, const Pair* const* pairs,
+                      Quad<hn::Vec<Positions>>& apart) {
+  const auto by = gather_rows(Positions(), [&](int k) { return pass.shifts[pairs[k]->shift]; });
+  apart.a = hn::Sub(apart.a, by.a);
+  apart.b = hn::Sub(apart.b, by.b);
+  apart.c = hn::Sub(apart.c, by.c);
+}
 
 /// How the partners stand and move to each other: differences from partner to holder, and the sums
 /// of radii and of inverse masses.
@@ -45,12 +60,11 @@ struct Relative {
 };
 
 template <class Real, bool turning, Kind kind>
-HWY_INLINE Relative<Real> between(const BlockPass<Real, turning>& pass, const Pair* pairs,
+HWY_INLINE Relative<Real> between(const BlockPass<Real, turning>& pass, const Pair* const* pairs,
                                   const Partners<Real, turning>& partners) {
   const Positions d;
-  const double* first[width];
-  const double* second[width];
-  partners.rows(&Body<Real, turning>::position, first, second);
+  const auto first = [&](int k) { return partners.a[k]->position; };
+  const auto second = [&](int k) { return partners.b[k]->position; };
   Relative<Real> relative;
   if constexpr (sizeof(Real) == sizeof(double)) {  // velocities follow positions in one row
     const auto both = combine_long_rows(d, first, second, Flip<double>::difference);
@@ -58,14 +72,7 @@ HWY_INLINE Relative<Real> between(const BlockPass<Real, turning>& pass, const Pa
   } else {
     relative.apart = combine_rows(d, first, second, Flip<double>::difference);
   }
-  if constexpr (kind == Kind::image) {
-    for (int k = 0; k < width; ++k) first[k] = pass.shifts[pairs[k].shift];
-    const auto shift = gather_rows(d, first);
-    auto& apart = relative.apart;
-    apart.a = hn::Sub(apart.a, shift.a);
-    apart.b = hn::Sub(apart.b, shift.b);
-    apart.c = hn::Sub(apart.c, shift.c);
-  }
+  if constexpr (kind == Kind::image) shift(pass, pairs, relative.apart);
   return relative;
 }
 
@@ -74,16 +81,16 @@ template <class Real, bool turning>
 HWY_INLINE void add_motion(const Partners<Real, turning>& partners, Quad<hn::Vec<Lanes<Real>>>& v,
                            TouchLanes<hn::Vec<Lanes<Real>>>& touch) {
   const Lanes<Real> d;
-  const Real* row_a[width];
-  const Real* row_b[width];
+  const auto row_a = [&](int k) { return partners.a[k]->velocity; };
+  const auto row_b = [&](int k) { return partners.b[k]->velocity; };
   if constexpr (sizeof(Real) == sizeof(double)) {
     if constexpr (turning) {
-      partners.rows(&Body<Real, turning>::radius_spin, row_a, row_b);
-      const auto w = combine_rows(d, row_a, row_b, Flip<Real>::sum);
+      const auto spin_a = [&](int k) { return partners.a[k]->radius_spin; };
+      const auto spin_b = [&](int k) { return partners.b[k]->radius_spin; };
+      const auto w = combine_rows(d, spin_a, spin_b, Flip<Real>::sum);
       touch.radius_spin = {w.a, w.b, w.c};
     }
   } else {
-    partners.rows(&Body<Real, turning>::velocity, row_a, row_b);
     if constexpr (turning) {
       const auto both = combine_long_rows(d, row_a, row_b, Flip<Real>::motion);
       v = both.low;
@@ -106,14 +113,13 @@ HWY_INLINE hn::Vec<Lanes<Real>> curvature(const Body<Real, turning>* const* a,
   return to_real<Real>(hn::Div(sum, hn::Mul(own, hn::Sub(sum, own))));
 }
 
-/// A batch of pairs on its way through the three steps.
-template <class Real>
+/// A batch of near pairs on its way through the three steps.
+template <class Real, bool turning>
 struct PairBatch {
   using V = hn::Vec<Lanes<Real>>;
-  const Pair* pairs = nullptr;
-  int at = 0;     // of the first in the list
-  int count = 0;  // of pairs; the other lanes repeat one
-  bool near = false;
+  int count;  // of pairs; the other lanes repeat the last
+  const Pair* pairs[width];
+  SpringRow<Real>* springs[width];
   TouchLanes<V> touch;
   RollLanes<Real> roll_a, roll_b;  // with a rolling law
   ForceLanes<V> out;
@@ -123,24 +129,72 @@ struct PairBatch {
 /// and the processor can only look ahead into another if the steps are short.
 inline constexpr int batches_at_once = 8;
 
+/// Room for the places, in a list, of the pairs that touch or are within the reach of the law.
+inline constexpr int near_enough = batches_at_once * width;
+inline constexpr int near_room = near_enough + 2 * width;
+using Places = hn::Rebind<std::int32_t, Positions>;
+
+/// For each pattern of bits the places of those that are set, in order.
+struct BitPlaces {
+  alignas(8) std::uint8_t of[1 << width][8];
+};
+inline constexpr BitPlaces bit_places = [] {
+  BitPlaces places{};
+  for (int bits = 0; bits < 1 << width; ++bits) {
+    int next = 0;
+    for (int place = 0; place < width; ++place) {
+      if ((bits >> place & 1) != 0) places.of[bits][next++] = static_cast<std::uint8_t>(place);
+    }
+  }
+  return places;
+}();
+
+/// Springs of contacts that have come apart go back to zero.
 template <class Real>
-HWY_INLINE hn::Mask<Lanes<Real>> near_lanes(const PairBatch<Real>& batch, double beyond_contact) {
-  const Lanes<Real> d;
-  const auto reach = hn::Set(d, static_cast<Real>(-beyond_contact));
-  return hn::And(hn::FirstN(d, batch.count), hn::Gt(batch.touch.overlap, reach));
+HWY_INLINE void release(int at, unsigned near, Springs<Real>& springs) {
+  const unsigned all = ((1U << width) - 1) << (at % 8);
+  const unsigned held = springs.held[at / 8];
+  unsigned gone = held & all & ~(near << (at % 8));
+  springs.held[at / 8] = static_cast<std::uint8_t>((held & ~all) | near << (at % 8));
+  while (gone != 0) {
+    const int contact = at / 8 * 8 + std::countr_zero(gone);
+    std::fill_n(springs.of(contact), springs.rows_each, SpringRow<Real>{});
+    gone &= gone - 1;
+  }
+}
+
+/// Writes to `near` which of `count` pairs from place `at` on are near, and returns how many.
+template <class Real, bool turning, Kind kind>
+HWY_INLINE int sift(const BlockPass<Real, turning>& pass, const Pair* const* pairs, int count,
+                    int at, Springs<Real>& springs, std::int32_t* near) {
+  const Positions d;
+  Partners<Real, turning> partners;
+  find_partners<Real, turning, kind>(pass, pairs, partners);
+  const auto first = [&](int k) { return partners.a[k]->position; };
+  const auto second = [&](int k) { return partners.b[k]->position; };
+  auto apart = combine_rows(d, first, second, Flip<double>::difference);
+  if constexpr (kind == Kind::image) shift(pass, pairs, apart);
+  const auto square =
+      hn::MulAdd(apart.a, apart.a, hn::MulAdd(apart.b, apart.b, hn::Mul(apart.c, apart.c)));
+  const auto reach = hn::Add(apart.d, hn::Set(d, pass.beyond_contact));
+  const auto are_near = hn::And(hn::Lt(square, hn::Mul(reach, reach)), hn::FirstN(d, count));
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, are_near, bytes);
+  const unsigned bits = bytes[0];
+  // (Compress would do, but copies its table to the stack each time.)
+  const Places places;
+  const auto set = hn::LoadU(hn::Rebind<std::uint8_t, Places>(), bit_places.of[bits]);
+  hn::StoreU(hn::Add(hn::PromoteTo(places, set), hn::Set(places, at)), places, near);
+  if (springs.rows_each > 0) release(at, bits, springs);
+  return std::popcount(bits);
 }
 
 /// First step: how the partners stand and move to each other.
 template <class Real, bool turning, Kind kind>
-HWY_INLINE void approach(const BlockPass<Real, turning>& pass, PairBatch<Real>& batch) {
+HWY_INLINE void approach(const BlockPass<Real, turning>& pass, PairBatch<Real, turning>& batch) {
   const ContactModel& model = pass.laws->model;
-  const Body<Real, turning>* mine = pass.now + pass.first;
-  const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.now;
   Partners<Real, turning> partners;
-  for (int k = 0; k < width; ++k) {
-    partners.a[k] = mine + batch.pairs[k].mine;
-    partners.b[k] = theirs + batch.pairs[k].other;
-  }
+  find_partners<Real, turning, kind>(pass, batch.pairs, partners);
   auto relative = between<Real, turning, kind>(pass, batch.pairs, partners);
   const Gap<Real> gap = gap_between<Real>(relative.apart);
   auto& touch = batch.touch;
@@ -164,23 +218,15 @@ HWY_INLINE void approach(const BlockPass<Real, turning>& pass, PairBatch<Real>& 
 
 /// Second step: springs and forces.
 template <class Real, bool turning>
-HWY_INLINE void respond(const BlockPass<Real, turning>& pass, PairBatch<Real>& batch,
-                        Springs<Real>& springs) {
+HWY_INLINE void respond(const BlockPass<Real, turning>& pass, PairBatch<Real, turning>& batch) {
   const Lanes<Real> d;
   const ContactModel& model = pass.laws->model;
-  const auto near = near_lanes(batch, pass.beyond_contact);
-  batch.near = !hn::AllFalse(d, near);
-  if (!batch.near) {
-    const auto zero = hn::Zero(d);
-    store_springs<Real, turning>(model, {{zero, zero, zero}, {zero, zero, zero}, zero}, batch.at,
-                                 springs);
-    return;
-  }
-  auto spring = load_springs<Real, turning>(model, springs, batch.at);
+  auto spring = load_springs<Real>(model, batch.springs);
   auto out = no_force<Real>();
-  contact_force<turning>(d, model, law_of(*pass.laws, batch.pairs), batch.touch,
-                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, near, out);
-  store_springs<Real, turning>(model, spring, batch.at, springs);
+  contact_force<turning>(d, model, law_of(*pass.laws, [&](int k) { return batch.pairs[k]->law; }),
+                         batch.touch, hn::Set(d, static_cast<Real>(pass.spring_step)), spring,
+                         hn::FirstN(d, batch.count), out);
+  store_springs<Real>(model, spring, batch.count, batch.springs);
   batch.out.force = out.force;
   if constexpr (turning) {
     batch.out.lever = out.lever;
@@ -190,11 +236,11 @@ HWY_INLINE void respond(const BlockPass<Real, turning>& pass, PairBatch<Real>& b
 
 /// Third step: to the sums of the particles.
 template <class Real, bool turning, Kind kind>
-HWY_INLINE void hand_over(const BlockPass<Real, turning>& pass, const PairBatch<Real>& batch) {
-  if (!batch.near) return;
-  const Pair* pairs = batch.pairs;
-  const auto holder = [&](int k) { return pairs[k].mine; };
-  const auto partner = [&](int k) { return pairs[k].other; };
+HWY_INLINE void hand_over(const BlockPass<Real, turning>& pass,
+                          const PairBatch<Real, turning>& batch) {
+  const Pair* const* pairs = batch.pairs;
+  const auto holder = [&](int k) { return pairs[k]->mine; };
+  const auto partner = [&](int k) { return pairs[k]->other; };
   if constexpr (turning) {
     if (pass.laws->model.rolling != RollingLaw::none) {
       ForceLanes<hn::Vec<Lanes<Real>>> own = batch.out;
@@ -212,41 +258,69 @@ HWY_INLINE void hand_over(const BlockPass<Real, turning>& pass, const PairBatch<
   if constexpr (kind == Kind::inner) loads.template add_to<true>(pass.sum, partner);
 }
 
+/// The forces of `count` near pairs, in whole batches; a rest stays, unless it is the `last`, and
+/// is counted.
 template <class Real, bool turning, Kind kind>
-HWY_INLINE void pass_batches(const BlockPass<Real, turning>& pass, PairBatch<Real>* batches,
-                             int count, Springs<Real>& springs) {
-  for (int b = 0; b < count; ++b) approach<Real, turning, kind>(pass, batches[b]);
-  for (int b = 0; b < count; ++b) respond<Real, turning>(pass, batches[b], springs);
-  for (int b = 0; b < count; ++b) hand_over<Real, turning, kind>(pass, batches[b]);
+HWY_INLINE int pass_near(const BlockPass<Real, turning>& pass, const std::vector<Pair>& list,
+                         bool last, Springs<Real>& springs, std::int32_t* near, int count) {
+  PairBatch<Real, turning> batches[near_room / width];
+  int full = 0;
+  int at = 0;
+  for (; at + (last ? 1 : width) <= count; at += width) {
+    PairBatch<Real, turning>& batch = batches[full++];
+    batch.count = std::min(width, count - at);
+    for (int k = 0; k < width; ++k) {
+      const int contact = near[at + std::min(k, batch.count - 1)];
+      batch.pairs[k] = list.data() + contact;
+      batch.springs[k] = springs.of(contact);
+    }
+  }
+  for (int b = 0; b < full; ++b) approach<Real, turning, kind>(pass, batches[b]);
+  for (int b = 0; b < full; ++b) respond<Real, turning>(pass, batches[b]);
+  for (int b = 0; b < full; ++b) hand_over<Real, turning, kind>(pass, batches[b]);
+  const Places places;  // the rest is less than a batch
+  if (at < count) hn::StoreU(hn::LoadU(places, near + at), places, near);
+  return std::max(count - at, 0);
 }
 
+/// Partners and springs of a batch that comes later.
+template <class Real, bool turning>
+HWY_INLINE void fetch(const Body<Real, turning>* theirs, const std::vector<Pair>& list, int at,
+                      const Springs<Real>& springs) {
+  for (int k = 0; k < width; ++k) {
+    const Body<Real, turning>* partner = theirs + list[at + k].other;
+    hwy::Prefetch(partner);
+    if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
+  }
+  const auto* first = reinterpret_cast<const char*>(springs.of(at));
+  const auto* last = reinterpret_cast<const char*>(springs.of(at + width));
+  for (; first < last; first += 64) hwy::Prefetch(first);
+}
+
+/// All pairs of one kind: which of them touch, then their forces. Much of a list does not touch,
+/// the more so the livelier the bed; so registers are full of what does.
 template <class Real, bool turning, Kind kind>
 HWY_INLINE void pass_list(const BlockPass<Real, turning>& pass, const std::vector<Pair>& list,
                           Springs<Real>& springs) {
   const Body<Real, turning>* theirs = kind == Kind::inner ? pass.now + pass.first : pass.now;
   const int size = static_cast<int>(list.size());
-  PairBatch<Real> batches[batches_at_once];
-  Pair rest[width];
-  for (int at = 0; at < size;) {
-    int count = 0;
-    for (; count < batches_at_once && at < size; ++count, at += width) {
-      PairBatch<Real>& batch = batches[count];
-      batch.at = at;
-      batch.count = std::min(width, size - at);
-      batch.pairs = list.data() + at;
-      if (batch.count < width) {  // the last pair again where there is none
-        for (int k = 0; k < width; ++k) rest[k] = list[std::min(at + k, size - 1)];
-        batch.pairs = rest;
-      }
-      const int ahead = std::max(std::min(at + fetch_ahead, size - width), 0);
-      for (int k = 0; k < std::min(width, size); ++k) {
-        const Body<Real, turning>* partner = theirs + list[ahead + k].other;
-        hwy::Prefetch(partner);
-        if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
-      }
+  const int whole = size / width * width;
+  alignas(64) std::int32_t near[near_room] = {};
+  int count = 0;
+  const Pair* pairs[width];
+  for (int at = 0; at < whole; at += width) {
+    fetch(theirs, list, std::min(at + fetch_ahead, whole - width), springs);
+    for (int k = 0; k < width; ++k) pairs[k] = list.data() + at + k;
+    count += sift<Real, turning, kind>(pass, pairs, width, at, springs, near + count);
+    if (count >= near_enough) {
+      count = pass_near<Real, turning, kind>(pass, list, false, springs, near, count);
     }
-    pass_batches<Real, turning, kind>(pass, batches, count, springs);
   }
+  if (whole < size) {  // the last pair again where there is none
+    for (int k = 0; k < width; ++k) pairs[k] = list.data() + std::min(whole + k, size - 1);
+    count += sift<Real, turning, kind>(pass, pairs, size - whole, whole, springs, near + count);
+  }
+  pass_near<Real, turning, kind>(pass, list, true, springs, near, count);
 }
 
 }  // namespace fluxpact::HWY_NAMESPACE

@@ -140,17 +140,18 @@ HWY_INLINE Quad<V> transpose(D d, const Quad<V>& rows) {
   }
 }
 
-/// Rows at the given addresses, side by side as `transpose` wants them.
-template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE Quad<V> load_rows(D d, const T* const* row) {
+/// Rows at the addresses row(lane), side by side as `transpose` wants them. (Not an array of
+/// addresses: the compiler would go through memory.)
+template <class D, class RowOf, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> load_rows(D d, const RowOf& row) {
   if constexpr (lanes_of<D> == 8) {
     const hn::Half<D> half;
-    const auto two = [&](int k) {
-      return hn::Combine(d, hn::LoadU(half, row[k + 4]), hn::LoadU(half, row[k]));
+    const auto two = [&](int k) HWY_ATTR {
+      return hn::Combine(d, hn::LoadU(half, row(k + 4)), hn::LoadU(half, row(k)));
     };
     return {two(0), two(1), two(2), two(3)};
   } else {
-    return {hn::LoadU(d, row[0]), hn::LoadU(d, row[1]), hn::LoadU(d, row[2]), hn::LoadU(d, row[3])};
+    return {hn::LoadU(d, row(0)), hn::LoadU(d, row(1)), hn::LoadU(d, row(2)), hn::LoadU(d, row(3))};
   }
 }
 
@@ -158,8 +159,8 @@ HWY_INLINE Quad<V> load_rows(D d, const T* const* row) {
 
 /// Components of sums of two rows: first[c] + second[c], with the sign of second[c] changed where
 /// `flip` holds -0.0 (the same four numbers again and again, for as many lanes as there are).
-template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* second, const T* flip) {
+template <class D, class First, class Second, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> combine_rows(D d, const First& first, const Second& second, const T* flip) {
 #if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) {
     const V sign = hn::Load(d, flip);
@@ -173,8 +174,8 @@ HWY_INLINE Quad<V> combine_rows(D d, const T* const* first, const T* const* seco
   T sum[4][lanes_of<D>];
   for (int lane = 0; lane < lanes_of<D>; ++lane) {
     for (int c = 0; c < 4; ++c) {
-      sum[c][lane] = std::signbit(flip[c]) ? first[lane][c] - second[lane][c]
-                                           : first[lane][c] + second[lane][c];
+      sum[c][lane] = std::signbit(flip[c]) ? first(lane)[c] - second(lane)[c]
+                                           : first(lane)[c] + second(lane)[c];
     }
   }
   return {hn::LoadU(d, sum[0]), hn::LoadU(d, sum[1]), hn::LoadU(d, sum[2]), hn::LoadU(d, sum[3])};
@@ -224,37 +225,33 @@ HWY_INLINE Eight<V> transpose(D d, const Eight<V>& rows) {
 #endif
 
 /// The same of rows of eight numbers, for eight signs.
-template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE Eight<V> combine_long_rows(D d, const T* const* first, const T* const* second,
+template <class D, class First, class Second, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Eight<V> combine_long_rows(D d, const First& first, const Second& second,
                                       const T* flip) {
 #if HWY_MAX_BYTES >= 32
   if constexpr (lanes_of<D> == 8) {
     const V sign = hn::Load(d, flip);
     const auto sum = [&](int k) HWY_ATTR {
-      return hn::Add(hn::LoadU(d, first[k]), hn::Xor(sign, hn::LoadU(d, second[k])));
+      return hn::Add(hn::LoadU(d, first(k)), hn::Xor(sign, hn::LoadU(d, second(k))));
     };
     return transpose(d,
                      Eight<V>{{sum(0), sum(1), sum(2), sum(3)}, {sum(4), sum(5), sum(6), sum(7)}});
   }
 #endif
-  const T* rest_first[lanes_of<D>];
-  const T* rest_second[lanes_of<D>];
-  for (int lane = 0; lane < lanes_of<D>; ++lane) {
-    rest_first[lane] = first[lane] + 4;
-    rest_second[lane] = second[lane] + 4;
-  }
-  return {combine_rows(d, first, second, flip), combine_rows(d, rest_first, rest_second, flip + 4)};
+  const auto first_rest = [&](int k) { return first(k) + 4; };
+  const auto second_rest = [&](int k) { return second(k) + 4; };
+  return {combine_rows(d, first, second, flip), combine_rows(d, first_rest, second_rest, flip + 4)};
 }
 
-/// Components of the rows at the given addresses.
-template <class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE Quad<V> gather_rows(D d, const T* const* row) {
+/// Components of the rows at the addresses row(lane).
+template <class D, class RowOf, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> gather_rows(D d, const RowOf& row) {
 #if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) return transpose(d, load_rows(d, row));
 #endif
   T lanes[4][lanes_of<D>];
   for (int lane = 0; lane < lanes_of<D>; ++lane) {
-    for (int c = 0; c < 4; ++c) lanes[c][lane] = row[lane][c];
+    for (int c = 0; c < 4; ++c) lanes[c][lane] = row(lane)[c];
   }
   return {hn::LoadU(d, lanes[0]), hn::LoadU(d, lanes[1]), hn::LoadU(d, lanes[2]),
           hn::LoadU(d, lanes[3])};
@@ -289,6 +286,38 @@ HWY_INLINE void store_rows(D d, V x, V y, V z, T* HWY_RESTRICT rows) {
   for (int lane = 0; lane < lanes_of<D>; ++lane) {
     for (int c = 0; c < 3; ++c) rows[stride * lane + c] = lanes[c][lane];
     rows[stride * lane + 3] = 0;
+  }
+}
+
+/// Components to the rows at the addresses row(lane), of the first `count` lanes only.
+template <class D, class RowOf, class T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE void scatter_rows(D d, const Quad<V>& components, int count, const RowOf& row) {
+#if HWY_MAX_BYTES >= 32
+  if constexpr (holds_rows<D>) {
+    const Quad<V> t = transpose(d, components);
+    const auto put = [&](V v, int k) HWY_ATTR {
+      if constexpr (lanes_of<D> == 8) {
+        const hn::Half<D> half;
+        if (k < count) hn::Store(hn::LowerHalf(half, v), half, row(k));
+        if (k + 4 < count) hn::Store(hn::UpperHalf(half, v), half, row(k + 4));
+      } else {
+        if (k < count) hn::Store(v, d, row(k));
+      }
+    };
+    put(t.a, 0);
+    put(t.b, 1);
+    put(t.c, 2);
+    put(t.d, 3);
+    return;
+  }
+#endif
+  T lanes[4][lanes_of<D>];
+  hn::StoreU(components.a, d, lanes[0]);
+  hn::StoreU(components.b, d, lanes[1]);
+  hn::StoreU(components.c, d, lanes[2]);
+  hn::StoreU(components.d, d, lanes[3]);
+  for (int lane = 0; lane < count; ++lane) {
+    for (int c = 0; c < 4; ++c) row(lane)[c] = lanes[c][lane];
   }
 }
 

@@ -62,7 +62,7 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     if (!walls_.empty() && phase != Phase::start) {
       find_touches<Real, turning>(
           walls_, laws_, surface_materials_, {pass.now + pass.first, pass.now + pass.last},
-          sizes_.beyond_contact, spring_numbers(laws_.model()), pass.contacts->surfaces);
+          sizes_.beyond_contact, spring_rows(laws_.model()), pass.contacts->surfaces);
     }
     const bool one = pass_block(pass);
     beyond = beyond || one;
@@ -167,7 +167,7 @@ void SoftSpheres<Real, turning>::present(int bodies) {
 
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::save_springs() {
-  if (spring_numbers(laws_.model()) == 0 && walls_.empty()) return;
+  if (spring_rows(laws_.model()) == 0 && walls_.empty()) return;
   const List& list = lists_[list_];
   saved_springs_.resize(list.block.size());
 #pragma omp parallel for num_threads(threads_) schedule(static)

@@ -1,30 +1,50 @@
 // What contacts remember from one sub-step to the next.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "dem_server/backends/native/huge_vector.hpp"
 
 namespace fluxpact {
 
-/// Springs of the contacts of one list, one row of numbers for each component: x, y, z of the
-/// elongation [m], seen from the holder, then what the law wants beside. Rows have room for whole
-/// vector registers.
+/// Four numbers: a vector seen from the holder of the contact, and one that looks the same from
+/// both sides.
+template <class Real>
+struct alignas(4 * sizeof(Real)) SpringRow {
+  Real number[4];
+};
+
+/// Springs of the contacts of one list, `spring_rows` of the contact law each. Only those of
+/// contacts that touch are read or written.
 template <class Real>
 struct Springs {
-  static constexpr int widest = 16;  // contacts in one register
-  HugeVector<Real> values;
+  HugeVector<SpringRow<Real>> rows;
+  std::vector<std::uint8_t> held;  ///< one bit a contact: it has touched, its rows may not be zero
+  int rows_each = 0;
   int contacts = 0;
-  std::ptrdiff_t stride = 0;  // from one row to the next
 
-  /// All zero, for so many contacts with so many numbers each.
-  void reset(int count, int numbers) {
+  /// All zero, for so many contacts with so many rows each.
+  void reset(int count, int each) {
     contacts = count;
-    stride = (count + widest - 1) / widest * widest;
-    values.assign(static_cast<std::size_t>(stride) * numbers, Real(0));
+    rows_each = each;
+    rows.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(each), {});
+    held.assign(each > 0 ? static_cast<std::size_t>(count) / 8 + 1 : 0, 0);
   }
-  Real* row(int number) { return values.data() + number * stride; }
-  const Real* row(int number) const { return values.data() + number * stride; }
+  SpringRow<Real>* of(std::int64_t contact) { return rows.data() + contact * rows_each; }
+  const SpringRow<Real>* of(std::int64_t contact) const {
+    return rows.data() + contact * rows_each;
+  }
+  /// What the contact `from` of other springs remembers; `mirrored`: its partner held it there.
+  void carry(const Springs& other, int from, bool mirrored, int contact) {
+    const Real sign = mirrored ? -1 : 1;
+    for (int r = 0; r < rows_each; ++r) {
+      const SpringRow<Real>& old = other.of(from)[r];
+      of(contact)[r] = {
+          {sign * old.number[0], sign * old.number[1], sign * old.number[2], old.number[3]}};
+    }
+    held[contact / 8] = static_cast<std::uint8_t>(held[contact / 8] | 1U << (contact % 8));
+  }
 };
 
 }  // namespace fluxpact

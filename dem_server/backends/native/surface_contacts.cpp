@@ -51,8 +51,8 @@ TouchRange touches_of(std::span<const SurfaceTouch> touches, int mine) {
 
 template <class Real, bool turning>
 void find_touches(const Walls& walls, const ContactLaws& laws, std::span<const int> materials,
-                  std::span<const Body<Real, turning>> spheres, double beyond_contact, int numbers,
-                  SurfaceContacts<Real>& contacts) {
+                  std::span<const Body<Real, turning>> spheres, double beyond_contact,
+                  int rows_each, SurfaceContacts<Real>& contacts) {
   std::swap(contacts.touches, contacts.former);
   std::swap(contacts.springs, contacts.former_springs);
   contacts.touches.clear();
@@ -71,13 +71,11 @@ void find_touches(const Walls& walls, const ContactLaws& laws, std::span<const i
     }
     if (count < 0) contacts.lost = mine;
   }
-  contacts.springs.reset(static_cast<int>(contacts.touches.size()), numbers);
-  for (int touch = 0; numbers > 0 && touch < contacts.springs.contacts; ++touch) {
+  contacts.springs.reset(static_cast<int>(contacts.touches.size()), rows_each);
+  for (int touch = 0; rows_each > 0 && touch < contacts.springs.contacts; ++touch) {
     const int old = former_touch(contacts.former, contacts.touches[touch]);
     if (old < 0) continue;
-    for (int n = 0; n < numbers; ++n) {
-      contacts.springs.row(n)[touch] = contacts.former_springs.row(n)[old];
-    }
+    contacts.springs.carry(contacts.former_springs, old, false, touch);
   }
 }
 

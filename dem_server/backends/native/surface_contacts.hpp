@@ -46,10 +46,10 @@ TouchRange touches_of(std::span<const SurfaceTouch> touches, int mine);
 
 /// Fill the touches of a block whose particles, near the surfaces, are at `spheres` (of the block).
 /// `materials`: of each surface. `beyond_contact` [m]: the reach of the law. Springs follow
-/// (`numbers` of each).
+/// (`rows_each` of each).
 template <class Real, bool turning>
 void find_touches(const Walls& walls, const ContactLaws& laws, std::span<const int> materials,
-                  std::span<const Body<Real, turning>> spheres, double beyond_contact, int numbers,
-                  SurfaceContacts<Real>& contacts);
+                  std::span<const Body<Real, turning>> spheres, double beyond_contact,
+                  int rows_each, SurfaceContacts<Real>& contacts);
 
 }  // namespace fluxpact

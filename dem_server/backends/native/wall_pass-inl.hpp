@@ -23,9 +23,7 @@ HWY_INLINE void pass_walls(const BlockPass<Real, turning>& pass,
   const ContactModel& model = pass.laws->model;
   const Body<Real, turning>* body[width];
   for (int k = 0; k < width; ++k) body[k] = pass.now + pass.first + contacts[k].mine;
-  const Real* row[width];
-  for (int k = 0; k < width; ++k) row[k] = body[k]->velocity;
-  const auto v = gather_rows(d, row);
+  const auto v = gather_rows(d, [&](int k) { return body[k]->velocity; });
   touch.velocity = {hn::Sub(v.a, wall_velocity.x), hn::Sub(v.b, wall_velocity.y),
                     hn::Sub(v.c, wall_velocity.z)};
   touch.root_mass = root_mass<Real>(pass.root_masses.wall, v.d);
@@ -37,8 +35,7 @@ HWY_INLINE void pass_walls(const BlockPass<Real, turning>& pass,
   }
   RollLanes<Real> roll = no_roll<Real>();
   if constexpr (turning) {
-    for (int k = 0; k < width; ++k) row[k] = body[k]->radius_spin;
-    const auto w = gather_rows(d, row);
+    const auto w = gather_rows(d, [&](int k) { return body[k]->radius_spin; });
     touch.radius_spin = {w.a, w.b, w.c};
     if (model.rolling != RollingLaw::none) {
       roll = gather_roll(body);
@@ -49,11 +46,13 @@ HWY_INLINE void pass_walls(const BlockPass<Real, turning>& pass,
   const auto near =
       hn::And(hn::FirstN(d, count),
               hn::Gt(touch.overlap, hn::Set(d, static_cast<Real>(-pass.beyond_contact))));
-  SpringLanes<V> spring = load_springs<Real, turning>(model, springs, at);
+  SpringRow<Real>* row_of_springs[width];
+  for (int k = 0; k < width; ++k) row_of_springs[k] = springs.of(at + std::min(k, count - 1));
+  SpringLanes<V> spring = load_springs<Real>(model, row_of_springs);
   ForceLanes<V> out = no_force<Real>();
-  contact_force<turning>(d, model, law_of(*pass.laws, contacts), touch,
-                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, near, out);
-  store_springs<Real, turning>(model, spring, at, springs);
+  contact_force<turning>(d, model, law_of(*pass.laws, [&](int k) { return contacts[k].law; }),
+                         touch, hn::Set(d, static_cast<Real>(pass.spring_step)), spring, near, out);
+  store_springs<Real>(model, spring, count, row_of_springs);
   if constexpr (turning) {
     if (model.rolling != RollingLaw::none) {
       out.lever = plus_scaled(out.lever, roll.inverse_radius, out.torque);
@@ -69,11 +68,9 @@ HWY_INLINE void pass_planes(const BlockPass<Real, turning>& pass, const NearPlan
                             int at, Springs<Real>& springs) {
   const Positions dd;
   const Lanes<Real> d;
-  const double* rows[width];
-  for (int k = 0; k < width; ++k) rows[k] = pass.now[pass.first + near[k].mine].position;
-  const auto x = gather_rows(dd, rows);
-  for (int k = 0; k < width; ++k) rows[k] = pass.planes[near[k].side];
-  const auto plane = gather_rows(dd, rows);
+  const Body<Real, turning>* mine = pass.now + pass.first;
+  const auto x = gather_rows(dd, [&](int k) { return mine[near[k].mine].position; });
+  const auto plane = gather_rows(dd, [&](int k) { return pass.planes[near[k].side]; });
   const auto height =
       hn::MulAdd(x.a, plane.a, hn::MulAdd(x.b, plane.b, hn::MulSub(x.c, plane.c, plane.d)));
   auto touch = no_touch<Real>();
@@ -99,11 +96,8 @@ template <class Real, bool turning>
 HWY_INLINE void pass_touches(const BlockPass<Real, turning>& pass, const SurfaceTouch* touches,
                              int count, int at, Springs<Real>& springs) {
   const Positions d;
-  const double* rows[width];
-  for (int k = 0; k < width; ++k) rows[k] = touches[k].normal;
-  const auto normal = gather_rows(d, rows);
-  for (int k = 0; k < width; ++k) rows[k] = touches[k].velocity;
-  const auto velocity = gather_rows(d, rows);
+  const auto normal = gather_rows(d, [&](int k) { return touches[k].normal; });
+  const auto velocity = gather_rows(d, [&](int k) { return touches[k].velocity; });
   alignas(64) double radius[width];
   for (int k = 0; k < width; ++k) radius[k] = pass.now[pass.first + touches[k].mine].radius;
   auto touch = no_touch<Real>();

@@ -256,12 +256,12 @@ TEST(ContactForce, takes_the_pair_of_each_lane_from_the_table) {
 }
 
 TEST(ContactForce, keeps_as_many_numbers_as_its_laws_need) {
-  EXPECT_EQ(spring_numbers({}), 0);
-  EXPECT_EQ(spring_numbers({.friction = true}), 3);
-  EXPECT_EQ(spring_numbers({.rolling = RollingLaw::constant_torque, .friction = true}), 3);
-  EXPECT_EQ(spring_numbers({.rolling = RollingLaw::spring_dashpot, .friction = true}), 6);
-  EXPECT_EQ(spring_numbers({.cohesion = CohesionLaw::liquid_bridge}), 1);
-  EXPECT_EQ(spring_numbers({.cohesion = CohesionLaw::jkr}), 1);
+  EXPECT_EQ(spring_rows({}), 0);
+  EXPECT_EQ(spring_rows({.friction = true}), 1);
+  EXPECT_EQ(spring_rows({.rolling = RollingLaw::constant_torque, .friction = true}), 1);
+  EXPECT_EQ(spring_rows({.rolling = RollingLaw::spring_dashpot, .friction = true}), 2);
+  EXPECT_EQ(spring_rows({.cohesion = CohesionLaw::liquid_bridge}), 1);
+  EXPECT_EQ(spring_rows({.cohesion = CohesionLaw::jkr}), 1);
 }
 
 }  // namespace

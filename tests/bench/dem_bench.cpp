@@ -10,6 +10,7 @@
 // resident then. 20 steps are not timed; then `repeats` times `steps`, in windows of 20. One line
 // a case, and one on the state at its end (compare_dem.py reads both).
 #include <fmt/format.h>
+#include <hwy/targets.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,6 +39,7 @@ struct Options {
   std::vector<int> particles;
   std::vector<int> threads{1};
   std::vector<Precision> precisions{Precision::full};
+  bool no_avx512 = false;
   int steps = 480;
   int repeats = 5;
 };
@@ -190,10 +192,12 @@ int main(int argc, char** argv) {
                                                     {"mixed", Precision::mixed}};
   app.add_option("--precision", options.precisions, "double, mixed")
       ->transform(CLI::CheckedTransformer(precisions));
+  app.add_flag("--no-avx512", options.no_avx512, "As on a processor without AVX-512");
   app.add_option("--steps", options.steps, "Timed steps of a repeat, in windows of 20")
       ->check(CLI::PositiveNumber);
   app.add_option("--repeats", options.repeats, "Timed repeats")->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
+  if (options.no_avx512) hwy::DisableTargets(HWY_AVX3 | HWY_AVX3_DL);
   if (options.bed.empty() && options.particles.empty()) {
     options.particles = {10000, 40000, 200000, 500000, 2000000};
   }

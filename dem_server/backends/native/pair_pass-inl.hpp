@@ -292,9 +292,9 @@ HWY_INLINE void fetch(const Body<Real, turning>* theirs, const std::vector<Pair>
     hwy::Prefetch(partner);
     if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
   }
-  const auto* first = reinterpret_cast<const char*>(springs.of(at));
-  const auto* last = reinterpret_cast<const char*>(springs.of(at + width));
-  for (; first < last; first += 64) hwy::Prefetch(first);
+  constexpr int rows_a_line = std::max(1, 64 / static_cast<int>(sizeof(SpringRow<Real>)));
+  const SpringRow<Real>* first = springs.of(at);
+  for (int row = 0; row < width * springs.rows_each; row += rows_a_line) hwy::Prefetch(first + row);
 }
 
 /// All pairs of one kind: which of them touch, then their forces. Much of a list does not touch,

@@ -77,6 +77,9 @@ class Walls {
   const Facets& facets() const { return facets_; }
   /// Surfaces that are one element each; the numbers of facets follow theirs.
   int primitives() const { return static_cast<int>(surface_of_primitive_.size()); }
+  int elements() const { return primitives() + static_cast<int>(facets_.facets.size()); }
+  /// What `nearby` appends is below this.
+  int element_codes() const { return 4 * elements(); }
 
   /// Move the surfaces to where they are at `time` [s]. They are at time 0 when made.
   void place(double time);

@@ -1,5 +1,5 @@
 // The native engine: its state and what it does with it. Soft spheres of one precision, with or
-// without spins; the parts stand in soft_spheres_{setup,run,lists,exchange}-inl.hpp.
+// without spins; the parts stand in soft_spheres_{setup,run,lists,exchange,state}-inl.hpp.
 #pragma once
 
 #include <omp.h>
@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 
+#include "dem_server/backends/engine_state.hpp"
 #include "dem_server/backends/native/contact_pass.hpp"
 #include "dem_server/backends/native/soundness.hpp"
 #include "dem_server/backends/native/step_limit.hpp"
@@ -58,6 +59,8 @@ class SoftSpheres final : public ParticleEngine {
   void exchange(std::span<const int> leaving, const ParticleState& entering) override;
   void commit() override;
   void rollback() override;
+  void store(EngineState& state) const override;
+  void restore(const Fields& state) override;
 
  private:
   using BodyRow = Body<Real, turning>;
@@ -82,6 +85,9 @@ class SoftSpheres final : public ParticleEngine {
   void check(int bodies, double time_step, int sub_step, int sub_steps) const;
   void present(int bodies);
   void save_springs();
+  template <class Visit>
+  void visit_scene(const Visit& visit) const;
+  List restored_list(const StateReader& state, int count) const;
   int threads_for(const Blocks& blocks) const {
     return std::clamp(threads_, 1, std::max(1, blocks.count()));
   }
@@ -93,6 +99,7 @@ class SoftSpheres final : public ParticleEngine {
   std::array<double[4], 6> planes_{};
   Vector3 gravity_;
   bool any_periodic_;
+  bool flow_;  // particles come and go
   int threads_;
   Walls walls_;
   std::vector<int> surface_materials_;  // of each surface
@@ -132,3 +139,4 @@ class SoftSpheres final : public ParticleEngine {
 #include "dem_server/backends/native/soft_spheres_lists-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_run-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_setup-inl.hpp"
+#include "dem_server/backends/native/soft_spheres_state-inl.hpp"

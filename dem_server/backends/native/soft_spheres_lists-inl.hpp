@@ -11,6 +11,10 @@ inline constexpr int largest_block = 8192;
 inline constexpr int least_blocks = 4;
 inline constexpr int smallest_block = 128;
 
+inline Blocks blocks_of(int particles) {
+  return {particles, std::clamp(particles / least_blocks, smallest_block, largest_block)};
+}
+
 /// Move what has left through periodic sides by whole periods.
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::wrap(HugeVector<BodyRow>& bodies) {
@@ -55,7 +59,7 @@ void SoftSpheres<Real, turning>::sort_and_list(int from, int to, const Places& p
   while (made == list_ || (has_candidate_ && made == committed_list_)) ++made;
   const List& before = lists_[list_];
   List& list = lists_[made];
-  list.blocks = {count, std::clamp(count / least_blocks, smallest_block, largest_block)};
+  list.blocks = blocks_of(count);
   list.row.resize(count);
   sorted.resize(count);
   drive_.resize(count);

@@ -38,6 +38,7 @@ SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, Co
       laws_(std::move(laws)),
       law_table_(law_table<Real>(laws_)),
       gravity_(scene.scene.gravity),
+      flow_(particles_flow(scene)),
       walls_(make_walls(scene, mesh)),
       presented_(checked_rows(std::move(initial), laws_.walls())) {
   const auto is = [this](SideKind kind) {

@@ -89,6 +89,9 @@ class Walls {
   /// good while this and the way of the particle together are within the skin.
   double travelled(double since, double reach) const;
 
+  /// Bound [m/s] of the speed of a surface inside the domain, at any time.
+  double fastest(int surface) const;
+
   /// Append to `elements` what is within `reach` [m] of a centre, with the side on which the
   /// particle is held: to be handed to `touches` as they are. `before`: the elements of the same
   /// particle in the list before, or none (not a part of `elements`). Needs no memory if `elements`
@@ -111,6 +114,8 @@ class Walls {
 
   std::vector<WallSurface> surfaces_;
   Facets facets_;
+  double arm_in_domain(const WallSurface& surface) const;
+
   std::vector<int> surface_of_primitive_;  // elements below its size; the triangles follow
   Vector3 lower_ = Vector3::Zero();        // [m] of the domain
   Vector3 upper_ = Vector3::Zero();

@@ -68,6 +68,8 @@ class SoftSpheres final : public ParticleEngine {
   using List = ContactList<Real>;
 
   void name_walls();
+  void expect_inflow(const Scene& scene);
+  void check_inflow() const;
   void place_walls(double time);
   bool walls_moved_far() const;
   void check_surfaces() const;
@@ -80,7 +82,7 @@ class SoftSpheres final : public ParticleEngine {
   void sort_and_list(int from, int to, const Places& places, bool carry_springs);
   Places take_out(std::span<const int> leaving);
   void put_in(const ParticleState& entering, Places& places);
-  Places kept_places() const;
+  const Places& kept_places();
   void wrap(HugeVector<BodyRow>& bodies);
   void check(int bodies, double time_step, int sub_step, int sub_steps) const;
   void present(int bodies);
@@ -102,12 +104,13 @@ class SoftSpheres final : public ParticleEngine {
   bool flow_;  // particles come and go
   int threads_;
   Walls walls_;
-  std::vector<int> surface_materials_;  // of each surface
-  std::vector<int> wall_materials_;     // of all walls, each once
-  double placed_at_ = 0;                // [s] where the walls stand
-  double time_ = 0;                     // [s] of the committed state
-  double window_ = 0;                   // [s] of the candidate
-  double time_step_;                    // [s] of the scene
+  std::vector<int> surface_materials_;       // of each surface
+  std::vector<WallsPresent> walls_present_;  // the materials of all walls, each once
+  ParticleState to_come_;  // the smallest and the largest that each inflow can bring
+  double placed_at_ = 0;   // [s] where the walls stand
+  double time_ = 0;        // [s] of the committed state
+  double window_ = 0;      // [s] of the candidate
+  double time_step_;       // [s] of the scene
   Sizes sizes_;
 
   ParticleState presented_;
@@ -129,6 +132,8 @@ class SoftSpheres final : public ParticleEngine {
   SizeLevels levels_;
   Resorting resorting_;
   HugeVector<Drive<Real>> sorted_drive_;
+  std::vector<std::array<std::int8_t, 3>> sorted_periods_;
+  Places kept_places_;
   std::int64_t rebuilds_ = 0;
   std::int64_t sub_steps_ = 0;
 };

@@ -10,9 +10,9 @@
 namespace fluxpact {
 
 /// What a contact reads of each partner. Between sub-steps of a window the velocity is half a step
-/// behind the position.
+/// behind the position. Aligned for its widest row, the position.
 template <class Real, bool turning>
-struct alignas(4 * sizeof(double)) Body {  // of its widest row
+struct alignas(4 * sizeof(double)) Body {
   double position[3];   ///< [m]
   double radius;        ///< [m]
   Real velocity[3];     ///< [m/s]

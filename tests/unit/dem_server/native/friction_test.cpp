@@ -24,6 +24,51 @@ TEST(Friction, turns_slip_into_rolling_at_five_sevenths) {
   }
 }
 
+/// Spheres of 1 mm, elastic but for friction 0.5 and a rolling friction of 0.02.
+Scene rolling_scene(RollingLaw law) {
+  Scene scene = box_scene({0.02, 0.02, 0.02});
+  add_laws(scene, 1000, 1.0, 0.5);
+  scene.particles.contact.rolling = law;
+  for (PairSettings& pair : scene.particles.contact.pairs) pair.rolling_friction = 0.02;
+  return scene;
+}
+
+TEST(RollingFriction, slows_a_sphere_that_rolls_on_a_wall) {
+  constexpr double g = 9.81;
+  constexpr double u0 = 0.1;
+  const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * 2250;
+  Scene scene = rolling_scene(RollingLaw::constant_torque);
+  scene.scene.gravity = {0, 0, -g};
+  ParticleState state;
+  add_sphere(state, {5e-3, 0.01, r - mass * g / 1000}, {u0, 0, 0}, r);
+  state.spin[0] = {0, u0 / r, 0};
+  const auto engine = make_engine(scene, state);
+  run(*engine, 0.04, 2e-6);
+  // M = μ_r r m g against the spin: u = u0 − 5/7 μ_r g t while it rolls.
+  const double lost = 5.0 / 7 * 0.02 * g * 0.04;
+  // The tangential spring swings by what the torque loads it with at once: 1e-2 of what is lost.
+  EXPECT_NEAR(u0 - engine->particles().velocity[0].x(), lost, 0.02 * lost);
+  EXPECT_NEAR(r * engine->particles().spin[0].y(), u0 - lost, 0.02 * lost);
+}
+
+TEST(RollingFriction, slows_two_spheres_that_roll_on_each_other) {
+  constexpr double push = 1e-3;  // N
+  constexpr double w0 = 50;      // rad/s, as cogs turn
+  const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * 2250;
+  ParticleState state;
+  const Vector3 half(r - 0.5 * push / 1000, 0, 0);
+  add_sphere(state, Vector3::Constant(0.01) - half, Vector3::Zero(), r);
+  add_sphere(state, Vector3::Constant(0.01) + half, Vector3::Zero(), r);
+  state.spin = {Vector3(0, 0, w0), Vector3(0, 0, -w0)};
+  const auto engine = make_engine(rolling_scene(RollingLaw::constant_torque), state);
+  const std::vector<Vector3> force{{push, 0, 0}, {-push, 0, 0}};
+  engine->advance(4e-3, 4000, force, {});
+  // M = μ_r R* F, R* = r / 2, on each against its spin, and I = 2/5 m r².
+  const double lost = 0.02 * 0.5 * r * push * 4e-3 / (0.4 * mass * r * r);
+  EXPECT_NEAR(engine->particles().spin[0].z(), w0 - lost, 1e-3 * lost);
+  EXPECT_NEAR(engine->particles().spin[1].z(), -w0 + lost, 1e-3 * lost);
+}
+
 TEST(Impact, on_a_wall_rebounds_with_the_restitution) {
   EXPECT_NEAR(hit_wall(0).normal, 4.5, tolerance * 4.5);
 }

@@ -81,6 +81,7 @@ class Run {
     }
     if (moment_.step != recorded_fields_ || moment_.step != recorded_particles_)
       record(moment_, true, true);
+    ask_for_figures();
     recorder_.close();
     progress_.finish();
     return interrupts() > 0 && moment_.step < windows(scene_) ? ExitCode::interrupted
@@ -135,6 +136,16 @@ class Run {
                                         .spin = snapshot.vectors("spin", count),
                                         .radius = snapshot.scalars("radius", count),
                                         .density = snapshot.scalars("density", count)});
+  }
+
+  /// What mixed precision has cost is told at the end.
+  void ask_for_figures() {
+    if (scene_.particles.numerics.precision != Precision::mixed || !has_particles(scene_)) return;
+    Message request;
+    request.header.type = MessageType::snapshot;
+    request.header.body["figures"] = std::int64_t{1};
+    const Message reply = session_.ask(Role::particles, request);
+    summary_.add_figures(fields_of(reply).numbers());
   }
 
   void record_fields(const Moment& moment) {

@@ -125,6 +125,17 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
          particles.waiting);
     line("  particle mass         {:.2e} relative, in any window", largest_particle_error_);
   }
+  if (figures_.contains(field::precision_velocity_rms)) {
+    line(
+        "  mixed precision       off double after one more window: velocities {:.2g} (rms; at most "
+        "{:.2g}) of their gains,",
+        figures_.at(field::precision_velocity_rms), figures_.at(field::precision_velocity_max));
+    line(
+        "                        overlaps {:.2g} ({:.2g}) of their mean, positions {:.2g} ({:.2g}) "
+        "of the radius",
+        figures_.at(field::precision_overlap_rms), figures_.at(field::precision_overlap_max),
+        figures_.at(field::precision_position_rms), figures_.at(field::precision_position_max));
+  }
   if (pressure_windows_ > 0) {
     const double drop = pressure_drop_.value() / static_cast<double>(pressure_windows_);
     const std::string weight =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ class Summary {
   /// One committed window; `record_seconds`: wall time of its record.
   void add(const AuditRow& row, const CommittedState& state, double record_seconds);
   void count_violation() { ++violations_; }
+
+  /// What the particle side tells of the whole run.
+  void add_figures(const std::map<std::string, double>& figures) { figures_ = figures; }
 
   /// The closing text. `wall_seconds`: of the whole run.
   std::string text(const Scene& scene, double wall_seconds) const;
@@ -40,6 +44,7 @@ class Summary {
     double lowest = INFINITY, highest = -INFINITY, largest_imbalance = 0;
   };
   std::vector<ScalarExtent> scalars_;  ///< over the run
+  std::map<std::string, double> figures_;
   AuditRow last_;
 };
 

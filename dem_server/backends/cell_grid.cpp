@@ -56,7 +56,9 @@ void CellGrid::sort(const Domain& domain, double cutoff, PositionRows positions)
   lay_out(domain, cutoff, positions);
   // The axis with the fewest cells runs fastest, so that adjacent cells are near in memory.
   axes_ = {0, 1, 2};
-  std::stable_sort(axes_.begin(), axes_.end(), [&](int a, int b) { return cells_[a] < cells_[b]; });
+  std::sort(axes_.begin(), axes_.end(), [&](int a, int b) {  // a stable sort would take memory
+    return cells_[a] < cells_[b] || (cells_[a] == cells_[b] && a < b);
+  });
   strides_[axes_[0]] = 1;
   strides_[axes_[1]] = cells_[axes_[0]];
   strides_[axes_[2]] = cells_[axes_[0]] * cells_[axes_[1]];

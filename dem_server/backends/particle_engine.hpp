@@ -34,6 +34,8 @@ struct EngineCounters {
   std::int64_t list_pairs = 0;  ///< in the list now
 };
 
+class EngineState;
+
 class ParticleEngine {
  public:
   virtual ~ParticleEngine() = default;
@@ -58,6 +60,15 @@ class ParticleEngine {
   virtual void exchange(std::span<const int> leaving, const ParticleState& entering) = 0;
   virtual void commit() = 0;
   virtual void rollback() = 0;
+
+  /// Adds the whole committed state to `state`: what `restore` needs to go on with the same bits.
+  /// Throws ProtocolError while a candidate is neither committed nor rolled back.
+  virtual void store(EngineState& state) const = 0;
+  /// Take a stored state in place of the own one, in an engine made for the same scene, whatever
+  /// particles it was made with. Throws ConfigError that says what does not fit: another engine,
+  /// precision or scene, other particles where none come or go, an array that is missing, of
+  /// another size, or damaged; the own state is unharmed then.
+  virtual void restore(const Fields& state) = 0;
 };
 
 }  // namespace fluxpact

@@ -100,7 +100,7 @@ std::vector<Vector3> lattice(const Entry& entry, const PackingBox& box) {
 }
 
 std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const Domain& domain,
-                                   const Room& room, const Progress& alive) {
+                                   const Room& room, const Mesh& mesh, const Progress& alive) {
   const InsertionSettings& settings = entry.settings;
   if (settings.type == InsertionType::file) {
     std::vector<ListedParticle> particles = read_particles(settings.path, settings.group);
@@ -114,7 +114,7 @@ std::vector<ListedParticle> placed(const Scene& scene, const Entry& entry, const
   box.alive = alive;
   if (settings.type == InsertionType::packing) return pack(entry, box);
   if (settings.type == InsertionType::settled) {
-    return settled_bed(scene, name_of(entry), settings, box, domain, alive);
+    return settled_bed(scene, name_of(entry), settings, box, domain, mesh, alive);
   }
   std::vector<Vector3> centres = lattice(entry, box);
   std::erase_if(centres, [&](const Vector3& x) { return !room.fits(x, 0.5 * settings.diameter); });
@@ -176,7 +176,7 @@ ParticleState insert_particles(const Scene& scene, const Mesh& mesh, const Progr
     const double density = scene.particles.materials.at(settings.material).density;
     const bool fixed = settings.motion == Mobility::fixed;
     any_fixed = any_fixed || fixed;
-    for (const ListedParticle& particle : placed(scene, entry, domain, room, alive)) {
+    for (const ListedParticle& particle : placed(scene, entry, domain, room, mesh, alive)) {
       state.id.push_back(state.size() + 1);
       state.position.push_back(particle.position);
       // A file may hold the speeds at which particles were caught.

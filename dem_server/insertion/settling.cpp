@@ -29,13 +29,18 @@ constexpr int windows_of_log = 50;
 struct Settling {
   const std::string& entry;
   const Scene& scene;
-  int up = 2;           ///< axis against gravity
-  double sign = 1;      ///< +1: up is towards larger coordinates
-  double gravity = 0;   ///< [m/s²]
-  double diameter = 0;  ///< mean [m]
-  double height = 0;    ///< of the loose packing [m]
-  double density = 0;   ///< [kg/m³]
-  PackingBox room{};    ///< of the loose packing
+  int up = 2;                    ///< axis against gravity
+  double sign = 1;               ///< +1: up is towards larger coordinates
+  double gravity = 0;            ///< [m/s²]
+  double diameter = 0;           ///< mean [m]
+  double height = 0;             ///< of the loose packing [m]
+  double density = 0;            ///< [kg/m³]
+  PackingBox room{};             ///< of the loose packing
+  const Mesh* vessel = nullptr;  ///< the mesh that holds it, if that is no box
+
+  double above_bottom(const PackingBox& box, const Vector3& x) const {
+    return sign > 0 ? x[up] - box.lower[up] : box.upper[up] - x[up];
+  }
 };
 
 /// The axis along which gravity points down.
@@ -51,17 +56,42 @@ void find_up(Settling& bed) {
       bed.entry, gravity.x(), gravity.y(), gravity.z());
 }
 
+/// Volume [m³] of the room up to `height` [m] above its bottom: of a mesh, the cells whose centres
+/// are.
+double volume_below(const Settling& bed, const PackingBox& box, double height) {
+  if (bed.vessel == nullptr) {
+    return box.volume() / (box.upper[bed.up] - box.lower[bed.up]) * height;
+  }
+  double volume = 0;
+  for (int cell = 0; cell < bed.vessel->cells(); ++cell) {
+    if (bed.above_bottom(box, bed.vessel->cell_centres[cell]) <= height) {
+      volume += bed.vessel->cell_volumes[cell];
+    }
+  }
+  return volume;
+}
+
+/// Least of the heights [m] up to `most` below which the room has `volume` [m³], or `most`.
+double height_of(const Settling& bed, const PackingBox& box, double volume, double most) {
+  double low = 0;
+  double high = most;
+  for (int halving = 0; halving < 40; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (volume_below(bed, box, middle) < volume ? low : high) = middle;
+  }
+  return high;
+}
+
 /// Places of a loose packing on the bottom of the box, up to the end of the domain if need be.
 std::vector<Vector3> pack_loosely(Settling& bed, const PackingBox& box, const Domain& domain,
                                   std::span<const double> diameters, std::uint64_t seed) {
   double solids = 0;
   for (const double diameter : diameters) solids += sphere_volume(diameter);
-  const double area = box.volume() / (box.upper[bed.up] - box.lower[bed.up]);
+  const double largest = *std::max_element(diameters.begin(), diameters.end());
   const double most = bed.sign > 0 ? domain.upper[bed.up] - box.lower[bed.up]
                                    : box.upper[bed.up] - domain.lower[bed.up];
   for (const double fraction : loose_fractions) {
-    const double height = std::min(
-        most, solids / (fraction * area) + *std::max_element(diameters.begin(), diameters.end()));
+    const double height = std::min(most, height_of(bed, box, solids / fraction, most) + largest);
     bed.room = box;
     bed.room.periodic.at(bed.up) = false;
     if (bed.sign > 0) bed.room.upper[bed.up] = box.lower[bed.up] + height;
@@ -79,11 +109,13 @@ std::vector<Vector3> pack_loosely(Settling& bed, const PackingBox& box, const Do
 /// A scene in which the bed alone settles in its own room.
 Scene scene_of(const Settling& bed, const std::string& material) {
   Scene scene = bed.scene;
-  scene.fluid.mesh = {};
-  scene.fluid.mesh.box = {bed.room.lower, bed.room.upper, {1, 1, 1}};
-  for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
-    if (bed.room.periodic.at(static_cast<std::size_t>(axis))) {
-      scene.fluid.mesh.periodic.push_back(axis);
+  if (bed.vessel == nullptr) {
+    scene.fluid.mesh = {};
+    scene.fluid.mesh.box = {bed.room.lower, bed.room.upper, {1, 1, 1}};
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
+      if (bed.room.periodic.at(static_cast<std::size_t>(axis))) {
+        scene.fluid.mesh.periodic.push_back(axis);
+      }
     }
   }
   scene.fluid.boundaries = {{"walls", {}}};
@@ -148,7 +180,9 @@ ParticleState come_to_rest(const Settling& bed, const char* stage, const Scene& 
   const double quiet_time = std::sqrt(2 * bed.diameter / bed.gravity);
   const double most = 20 * (least + std::sqrt(2 * bed.height / bed.gravity));
   const double time_constant = std::max(damping, 2 * window);
-  const auto engine = make_native_engine(scene, make_box(scene.fluid.mesh), std::move(particles));
+  const auto engine =
+      make_native_engine(scene, bed.vessel != nullptr ? *bed.vessel : make_box(scene.fluid.mesh),
+                         std::move(particles));
   std::vector<Vector3> force;
   double quiet_since = INFINITY;
   double energy = INFINITY;
@@ -220,25 +254,36 @@ std::vector<ListedParticle> cut(const Settling& bed, const ParticleState& settle
   return particles;
 }
 
+/// A vessel is a vessel as a whole: nothing would hold the bed at another side of `within`.
+void check_whole(const Settling& bed, const PackingBox& box, const Domain& domain) {
+  for (int side = 0; side < 6; ++side) {
+    const bool top = side == 2 * bed.up + (bed.sign > 0 ? 1 : 0);
+    const double at = side % 2 == 0 ? box.lower[side / 2] : box.upper[side / 2];
+    if (top || std::abs(at - domain.plane(side)) <= 1e-9 * domain.length(side / 2)) continue;
+    throw ConfigError(
+        "{}: `within` ends at {} = {:.6g} m inside a mesh that is no box, whose boundary alone "
+        "holds a settled bed; leave out that bound, or give `height`",
+        bed.entry, "xyz"[side / 2], at);
+  }
+}
+
 }  // namespace
 
 std::vector<ListedParticle> settled_bed(const Scene& scene, const std::string& entry,
                                         const InsertionSettings& settings, const PackingBox& box,
-                                        const Domain& domain, const Progress& alive) {
+                                        const Domain& domain, const Mesh& mesh,
+                                        const Progress& alive) {
   Settling bed{entry, scene};
   find_up(bed);
   if (box.room != nullptr && box.room->bounded_by_mesh()) {
-    throw ConfigError(
-        "{}: a bed settles between the sides of a box and particles.surfaces, but the mesh is no "
-        "box; let a loose packing settle in a run of its own and read it from its results.h5 "
-        "(type: file)",
-        entry);
+    bed.vessel = &mesh;
+    check_whole(bed, box, domain);
   }
   bed.density = scene.particles.materials.at(settings.material).density;
-  const double area = box.volume() / (box.upper[bed.up] - box.lower[bed.up]);
   const std::vector<double> diameters =
       settings.height > 0
-          ? diameters_of_volume(entry, settings, dense_fraction * area * settings.height)
+          ? diameters_of_volume(entry, settings,
+                                dense_fraction * volume_below(bed, box, settings.height))
           : entry_diameters(entry, settings, box.volume());
   double cubes = 0;
   for (const double diameter : diameters) cubes += diameter * diameter * diameter;

@@ -64,6 +64,7 @@ class ChosenByScene : public Participant {
   void commit() override { chosen_->commit(); }
   void rollback() override { chosen_->rollback(); }
   void snapshot(Fields& out) override { chosen_->snapshot(out); }
+  void figures(Fields& out, const Progress& progress) override { chosen_->figures(out, progress); }
 
  private:
   std::string backend_;

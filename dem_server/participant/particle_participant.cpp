@@ -1,8 +1,11 @@
 #include "dem_server/participant/particle_participant.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <chrono>
 
+#include "dem_server/participant/precision_error.hpp"
 #include "proto/base/compensated_sum.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/field_names.hpp"
@@ -55,6 +58,12 @@ void ParticleParticipant::configure(const Scene& scene, const Mesh& mesh) {
   particle_velocity_.resize(cells);
   impulse_given_.assign(cells, Vector3::Zero());
   pending_ = false;
+  last_window_ = 0;
+  mixed_.reset();
+  if (scene.particles.backend == ParticleBackend::native &&
+      scene.particles.numerics.precision == Precision::mixed) {
+    mixed_.emplace(Place{scene, mesh});
+  }
 }
 
 void ParticleParticipant::start(const Fields& in, Fields& out) {
@@ -138,6 +147,7 @@ void ParticleParticipant::commit() {
   engine_->commit();
   if (flow_) flow_->commit();
   std::swap(committed_, candidate_);
+  last_window_ = committed_.window;
   pending_ = false;
 }
 
@@ -162,6 +172,37 @@ void ParticleParticipant::snapshot(Fields& out) {
   out.add("spin", particles.spin);
   out.add("radius", particles.radius);
   out.add("density", particles.density);
+}
+
+/// What the fluid did in the last window to those that are there now [N].
+std::vector<Vector3> ParticleParticipant::last_force() const {
+  const auto now = static_cast<std::size_t>(engine_->particles().size());
+  const std::span<const int> before = flow_ ? flow_->row_before() : std::span<const int>{};
+  std::vector<Vector3> force(now, Vector3::Zero());
+  for (std::size_t row = 0; row < now; ++row) {
+    const auto then = before.empty() ? row : static_cast<std::size_t>(before[row]);
+    if (then < forces_.force.size()) force[row] = forces_.force[then];
+  }
+  return force;
+}
+
+void ParticleParticipant::figures(Fields& out, const Progress& progress) {
+  if (!mixed_ || last_window_ == 0 || pending_) return;
+  try {
+    const PrecisionError error = measure_precision(
+        mixed_->scene, mixed_->mesh, *engine_, last_window_, sub_steps_, last_force(), progress);
+    publish_precision(error, out);
+    spdlog::info(
+        "mixed precision against double, one window after the last: velocities differ by {:.2g} "
+        "(rms; at most {:.2g}) of the rms of their gains, overlaps by {:.2g} ({:.2g}) of their "
+        "mean, positions by {:.2g} ({:.2g}) of the radius",
+        error.velocity_rms, error.velocity_max, error.overlap_rms, error.overlap_max,
+        error.position_rms, error.position_max);
+  } catch (const NumericsError& failure) {
+    // The run is over and whole; what would come after it is not a part of it.
+    spdlog::warn("mixed precision could not be compared with double after the last window: {}",
+                 failure.what());
+  }
 }
 
 }  // namespace fluxpact

@@ -46,7 +46,12 @@ class ParticleParticipant : public Participant {
   /// pending: the engine then shows that one.
   void snapshot(Fields& out) override;
 
+  /// Of the native engine in mixed precision, if a window was committed: the numbers
+  /// precision_*, which also go to the log; else nothing.
+  void figures(Fields& out, const Progress& progress) override;
+
  private:
+  std::vector<Vector3> last_force() const;
   void map_particles(std::int64_t step);
   void publish(double wall_seconds, Fields& out);
 
@@ -60,6 +65,12 @@ class ParticleParticipant : public Participant {
   double first_window_ = 0;  ///< [s]
   std::vector<double> cell_volumes_;
   std::vector<Vector3> cell_centres_;
+  struct Place {
+    Scene scene;
+    Mesh mesh;
+  };
+  std::optional<Place> mixed_;  ///< of particles in mixed precision, for `figures`
+  double last_window_ = 0;      ///< [s] of the last committed window; 0: none was
 
   Offer committed_;
   Offer candidate_;

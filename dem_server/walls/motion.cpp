@@ -57,4 +57,18 @@ double displacement(const MotionSettings& motion, double since, double time, dou
   return 0;
 }
 
+double largest_speed(const MotionSettings& motion, double arm) {
+  switch (motion.type) {
+    case MotionType::none:
+      break;
+    case MotionType::translation:
+      return motion.velocity.norm();
+    case MotionType::rotation:
+      return std::abs(motion.rate) * arm;
+    case MotionType::vibration:
+      return 2 * std::numbers::pi * std::abs(motion.frequency) * motion.amplitude.norm();
+  }
+  return 0;
+}
+
 }  // namespace fluxpact

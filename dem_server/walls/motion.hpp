@@ -36,4 +36,8 @@ Pose pose_at(const MotionSettings& motion, double time);
 /// where it was at `since` [s].
 double displacement(const MotionSettings& motion, double since, double time, double arm);
 
+/// The largest speed [m/s], at any time, of any point at most `arm` [m] from the axis of a
+/// rotation.
+double largest_speed(const MotionSettings& motion, double arm);
+
 }  // namespace fluxpact

@@ -45,19 +45,30 @@ void Walls::place(double time) {
 double Walls::travelled(double since, double reach) const {
   double farthest = 0;
   for (const WallSurface& surface : surfaces_) {
-    double arm = 0;
-    if (surface.motion.type == MotionType::rotation && surface.arm > 0) {
-      const Vector3 axis = surface.motion.direction.normalized();
-      for (int corner = 0; corner < 8; ++corner) {
-        Vector3 at;
-        for (int a = 0; a < 3; ++a) at[a] = (corner >> a & 1) == 0 ? lower_[a] : upper_[a];
-        arm = std::max(arm, (at - surface.motion.point).cross(axis).norm());
-      }
-      arm = std::min(arm, surface.arm + reach);
-    }
+    const bool turns = surface.motion.type == MotionType::rotation && surface.arm > 0;
+    const double arm = turns ? std::min(arm_in_domain(surface), surface.arm + reach) : 0;
     farthest = std::max(farthest, displacement(surface.motion, since, time_, arm));
   }
   return farthest;
+}
+
+/// Distance [m] of the farthest place in the domain from the axis of a rotation.
+double Walls::arm_in_domain(const WallSurface& surface) const {
+  const Vector3 axis = surface.motion.direction.normalized();
+  double arm = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector3 at;
+    for (int a = 0; a < 3; ++a) at[a] = (corner >> a & 1) == 0 ? lower_[a] : upper_[a];
+    arm = std::max(arm, (at - surface.motion.point).cross(axis).norm());
+  }
+  return arm;
+}
+
+double Walls::fastest(int surface) const {
+  const MotionSettings& motion = surfaces_[surface].motion;
+  // A wall that turns in itself has an arm of 0, and yet its skin moves.
+  const double arm = motion.type == MotionType::rotation ? arm_in_domain(surfaces_[surface]) : 0;
+  return largest_speed(motion, arm);
 }
 
 int Walls::surface_of(int element) const {

@@ -77,6 +77,9 @@ class Walls {
   const Facets& facets() const { return facets_; }
   /// Surfaces that are one element each; the numbers of facets follow theirs.
   int primitives() const { return static_cast<int>(surface_of_primitive_.size()); }
+  int elements() const { return primitives() + static_cast<int>(facets_.facets.size()); }
+  /// What `nearby` appends is below this.
+  int element_codes() const { return 4 * elements(); }
 
   /// Move the surfaces to where they are at `time` [s]. They are at time 0 when made.
   void place(double time);
@@ -85,6 +88,9 @@ class Walls {
   /// moved from where it was at `since` [s] to where it is now. A list made then with a skin is
   /// good while this and the way of the particle together are within the skin.
   double travelled(double since, double reach) const;
+
+  /// Bound [m/s] of the speed of a surface inside the domain, at any time.
+  double fastest(int surface) const;
 
   /// Append to `elements` what is within `reach` [m] of a centre, with the side on which the
   /// particle is held: to be handed to `touches` as they are. `before`: the elements of the same
@@ -108,6 +114,8 @@ class Walls {
 
   std::vector<WallSurface> surfaces_;
   Facets facets_;
+  double arm_in_domain(const WallSurface& surface) const;
+
   std::vector<int> surface_of_primitive_;  // elements below its size; the triangles follow
   Vector3 lower_ = Vector3::Zero();        // [m] of the domain
   Vector3 upper_ = Vector3::Zero();

@@ -33,6 +33,18 @@ inline constexpr auto particle_momentum_entered =
 inline constexpr auto particle_momentum_left =
     "particle_momentum_left";  ///< Σ m v [N s], vector, one row
 
+// From the particle side about a run in mixed precision, after its last window: differences to
+// double precision after one more window, root mean square and largest.
+inline constexpr auto precision_velocity_rms =
+    "precision_velocity_rms";  ///< of the velocities over the rms of their gains in the window [-]
+inline constexpr auto precision_velocity_max = "precision_velocity_max";
+inline constexpr auto precision_overlap_rms =
+    "precision_overlap_rms";  ///< of the overlaps of spheres over their mean [-]
+inline constexpr auto precision_overlap_max = "precision_overlap_max";
+inline constexpr auto precision_position_rms =
+    "precision_position_rms";  ///< of the positions over the radius [-]
+inline constexpr auto precision_position_max = "precision_position_max";
+
 // From the fluid side. One row a face, or a cell.
 inline constexpr auto face_flux =
     "face_flux";  ///< Φ: superficial mass flux of the window [kg/s], out of the owner

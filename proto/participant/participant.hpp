@@ -99,6 +99,10 @@ class Participant {
   /// The committed state of what only this side holds (particles), for the record. Empty if
   /// nothing.
   virtual void snapshot(Fields& out) = 0;
+
+  /// Figures of the whole run, as numbers: asked at most once, after the last window. The committed
+  /// state stays as it is.
+  virtual void figures(Fields& /*out*/, const Progress& /*progress*/) {}
 };
 
 }  // namespace fluxpact

@@ -121,7 +121,7 @@ class Session {
         answer([&](Fields& out) { advance(message, out); });
         break;
       case MessageType::snapshot:
-        answer([&](Fields& out) { participant_.snapshot(out); });
+        answer([&](Fields& out) { snapshot(header, out); });
         break;
       case MessageType::commit:
         participant_.commit();
@@ -161,6 +161,15 @@ class Session {
                         number(message.header, "length")};
     last_sent_ = SteadyClock::now();
     participant_.advance(window, fields_of(message), out, [this] { say_alive(deadline_); });
+  }
+
+  void snapshot(const Header& header, Fields& out) {
+    if (!header.body.contains("figures")) {
+      participant_.snapshot(out);
+      return;
+    }
+    last_sent_ = SteadyClock::now();
+    participant_.figures(out, [this] { say_alive(deadline_); });
   }
 
   /// A sign of life if the last one is a good part of the other side's patience [s] ago.

@@ -1,5 +1,5 @@
 // The native engine: its state and what it does with it. Soft spheres of one precision, with or
-// without spins; the parts stand in soft_spheres_{setup,run,lists,exchange}-inl.hpp.
+// without spins; the parts stand in soft_spheres_{setup,run,lists,exchange,state}-inl.hpp.
 #pragma once
 
 #include <omp.h>
@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 
+#include "dem_server/backends/engine_state.hpp"
 #include "dem_server/backends/native/contact_pass.hpp"
 #include "dem_server/backends/native/soundness.hpp"
 #include "dem_server/backends/native/step_limit.hpp"
@@ -58,6 +59,8 @@ class SoftSpheres final : public ParticleEngine {
   void exchange(std::span<const int> leaving, const ParticleState& entering) override;
   void commit() override;
   void rollback() override;
+  void store(EngineState& state) const override;
+  void restore(const Fields& state) override;
 
  private:
   using BodyRow = Body<Real, turning>;
@@ -65,6 +68,8 @@ class SoftSpheres final : public ParticleEngine {
   using List = ContactList<Real>;
 
   void name_walls();
+  void expect_inflow(const Scene& scene);
+  void check_inflow() const;
   void place_walls(double time);
   bool walls_moved_far() const;
   void check_surfaces() const;
@@ -77,11 +82,14 @@ class SoftSpheres final : public ParticleEngine {
   void sort_and_list(int from, int to, const Places& places, bool carry_springs);
   Places take_out(std::span<const int> leaving);
   void put_in(const ParticleState& entering, Places& places);
-  Places kept_places() const;
+  const Places& kept_places();
   void wrap(HugeVector<BodyRow>& bodies);
   void check(int bodies, double time_step, int sub_step, int sub_steps) const;
   void present(int bodies);
   void save_springs();
+  template <class Visit>
+  void visit_scene(const Visit& visit) const;
+  List restored_list(const StateReader& state, int count) const;
   int threads_for(const Blocks& blocks) const {
     return std::clamp(threads_, 1, std::max(1, blocks.count()));
   }
@@ -93,14 +101,16 @@ class SoftSpheres final : public ParticleEngine {
   std::array<double[4], 6> planes_{};
   Vector3 gravity_;
   bool any_periodic_;
+  bool flow_;  // particles come and go
   int threads_;
   Walls walls_;
-  std::vector<int> surface_materials_;  // of each surface
-  std::vector<int> wall_materials_;     // of all walls, each once
-  double placed_at_ = 0;                // [s] where the walls stand
-  double time_ = 0;                     // [s] of the committed state
-  double window_ = 0;                   // [s] of the candidate
-  double time_step_;                    // [s] of the scene
+  std::vector<int> surface_materials_;       // of each surface
+  std::vector<WallsPresent> walls_present_;  // the materials of all walls, each once
+  ParticleState to_come_;  // the smallest and the largest that each inflow can bring
+  double placed_at_ = 0;   // [s] where the walls stand
+  double time_ = 0;        // [s] of the committed state
+  double window_ = 0;      // [s] of the candidate
+  double time_step_;       // [s] of the scene
   Sizes sizes_;
 
   ParticleState presented_;
@@ -122,6 +132,8 @@ class SoftSpheres final : public ParticleEngine {
   SizeLevels levels_;
   Resorting resorting_;
   HugeVector<Drive<Real>> sorted_drive_;
+  std::vector<std::array<std::int8_t, 3>> sorted_periods_;
+  Places kept_places_;
   std::int64_t rebuilds_ = 0;
   std::int64_t sub_steps_ = 0;
 };
@@ -132,3 +144,4 @@ class SoftSpheres final : public ParticleEngine {
 #include "dem_server/backends/native/soft_spheres_lists-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_run-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_setup-inl.hpp"
+#include "dem_server/backends/native/soft_spheres_state-inl.hpp"

@@ -77,7 +77,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
   const double time_step = window / sub_steps;
   // Contacts by Hertz' law are the shorter the faster they are.
   if (laws_.model().law == ContactLaw::hertz) {
-    sizes_.limit = step_limit(laws_, presented_, wall_materials_);
+    sizes_.limit = step_limit(laws_, presented_, walls_present_);
   }
   check_time_step(sizes_.limit, time_step);
   set_drive(force);
@@ -173,8 +173,13 @@ void SoftSpheres<Real, turning>::save_springs() {
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int b = 0; b < list.blocks.count(); ++b) {
     const ContactBlock<Real>& block = list.block[b];
-    saved_springs_[b] = {block.inner_springs, block.outer_springs,    block.image_springs,
-                         block.plane_springs, block.surfaces.springs, block.surfaces.touches};
+    SavedSprings<Real>& saved = saved_springs_[b];  // its memory is used again
+    saved.inner = block.inner_springs;
+    saved.outer = block.outer_springs;
+    saved.image = block.image_springs;
+    saved.plane = block.plane_springs;
+    saved.surface = block.surfaces.springs;
+    saved.touches = block.surfaces.touches;
   }
 }
 

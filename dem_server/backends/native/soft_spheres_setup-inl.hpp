@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dem_server/backends/native/soft_spheres.hpp"
+#include "proto/scene/size_law.hpp"
 
 namespace fluxpact {
 
@@ -38,6 +39,7 @@ SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, Co
       laws_(std::move(laws)),
       law_table_(law_table<Real>(laws_)),
       gravity_(scene.scene.gravity),
+      flow_(particles_flow(scene)),
       walls_(make_walls(scene, mesh)),
       presented_(checked_rows(std::move(initial), laws_.walls())) {
   const auto is = [this](SideKind kind) {
@@ -46,11 +48,13 @@ SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, Co
   any_periodic_ = is(SideKind::periodic);
   const int asked = scene.particles.numerics.threads;
   threads_ = asked > 0 ? asked : omp_get_max_threads();
-  if (is(SideKind::wall)) wall_materials_.push_back(laws_.walls());
+  if (is(SideKind::wall)) walls_present_.push_back({laws_.walls(), 0});
   name_walls();
+  expect_inflow(scene);
   time_step_ = scene.coupling.window / sub_steps(scene);
   check_law_indices(laws_);
   size_up();
+  check_inflow();
   tabulate_sides();
   const int count = presented_.size();
   Places places;
@@ -78,10 +82,55 @@ void SoftSpheres<Real, turning>::name_walls() {
     int material = 0;
     while (material < laws_.walls() && laws_.name(material) != walls_[surface].material) ++material;
     surface_materials_.push_back(material);
-    if (std::ranges::find(wall_materials_, material) == wall_materials_.end()) {
-      wall_materials_.push_back(material);
+    auto known = std::ranges::find(walls_present_, material, &WallsPresent::material);
+    if (known == walls_present_.end()) {
+      known = walls_present_.insert(known, {material, 0});
+    }
+    known->speed = std::max(known->speed, walls_.fastest(surface));
+  }
+}
+
+/// What comes in later must not be refused then.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::expect_inflow(const Scene& scene) {
+  for (const InflowSettings& inflow : scene.particles.inflow) {
+    const auto& materials = scene.particles.materials;
+    const auto material = materials.find(inflow.material);
+    if (material == materials.end()) continue;  // an error of the inflow's own
+    const SizeLaw sizes(inflow.diameter, inflow.sizes);
+    for (const double diameter : {sizes.smallest(), sizes.largest()}) {
+      to_come_.id.push_back(to_come_.size() + 1);
+      to_come_.position.emplace_back(Vector3::Zero());
+      to_come_.velocity.push_back(inflow.velocity);
+      to_come_.spin.emplace_back(Vector3::Zero());
+      to_come_.radius.push_back(0.5 * diameter);
+      to_come_.density.push_back(material->second.density);
+      to_come_.material.push_back(static_cast<int>(std::distance(materials.begin(), material)));
     }
   }
+}
+
+/// Throws for those that particles.inflow can bring as `size_up` does for those that are there.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::check_inflow() const {
+  if (to_come_.size() == 0) return;
+  ParticleState all = presented_;
+  all.fixed.resize(all.fixed.empty() ? 0 : all.id.size() + to_come_.id.size(), 0);
+  const auto append = [](auto& values, const auto& more) {
+    values.insert(values.end(), more.begin(), more.end());
+  };
+  append(all.id, to_come_.id);
+  append(all.position, to_come_.position);
+  append(all.velocity, to_come_.velocity);
+  append(all.radius, to_come_.radius);
+  append(all.density, to_come_.density);
+  append(all.material, to_come_.material);
+  StepLimit limit = step_limit(laws_, all, walls_present_);
+  if (limit.longest < sizes_.limit.longest) limit.reason += ", once particles.inflow has begun";
+  check_time_step(limit, time_step_);
+  const double largest = 2 * *std::ranges::max_element(all.radius);
+  check_periods(domain_, largest,
+                largest * (1 + skin_per_diameter) + reach_beyond_contact(laws_, 0.5 * largest));
 }
 
 template <class Real, bool turning>
@@ -121,7 +170,7 @@ void SoftSpheres<Real, turning>::size_up() {
   sizes_.skin = skin_per_diameter * mean;
   sizes_.beyond_contact = reach_beyond_contact(laws_, 0.5 * largest);
   sizes_.root_masses = common_root_masses(presented_);
-  sizes_.limit = step_limit(laws_, presented_, wall_materials_);
+  sizes_.limit = step_limit(laws_, presented_, walls_present_);
   check_periods(domain_, largest, largest + sizes_.skin + sizes_.beyond_contact);
   check_time_step(sizes_.limit, time_step_);
 }

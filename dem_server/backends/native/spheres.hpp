@@ -10,9 +10,9 @@
 namespace fluxpact {
 
 /// What a contact reads of each partner. Between sub-steps of a window the velocity is half a step
-/// behind the position.
+/// behind the position. Aligned for its widest row, the position.
 template <class Real, bool turning>
-struct alignas(4 * sizeof(Real)) Body {
+struct alignas(4 * sizeof(double)) Body {
   double position[3];   ///< [m]
   double radius;        ///< [m]
   Real velocity[3];     ///< [m/s]
@@ -22,7 +22,7 @@ struct alignas(4 * sizeof(Real)) Body {
 };
 
 template <class Real>
-struct alignas(4 * sizeof(Real)) Body<Real, false> {
+struct alignas(4 * sizeof(double)) Body<Real, false> {
   double position[3];
   double radius;
   Real velocity[3];

@@ -105,14 +105,15 @@ void check_meeting(const Meeting& meeting, const ContactModel& model) {
 
 double in_series(double a, double b) { return std::isinf(b) ? a : a * b / (a + b); }
 
-/// A particle of material `a` at a wall of material `wall`.
-Meeting meeting_with_wall(const ContactLaws& laws, const Present& one, int a, int wall) {
-  return {laws[laws.index(a, wall)],
-          fmt::format("[{}, {}]", laws.name(a), laws.name(wall)),
+/// A particle of material `a` at a wall.
+Meeting meeting_with_wall(const ContactLaws& laws, const Present& one, int a,
+                          const WallsPresent& wall) {
+  return {laws[laws.index(a, wall.material)],
+          fmt::format("[{}, {}]", laws.name(a), laws.name(wall.material)),
           one.lightest,
           one.smallest,
           one.largest,
-          one.fastest};
+          one.fastest + wall.speed};
 }
 
 /// Free particles of the material `a` and those of the group `b`.
@@ -131,7 +132,7 @@ Meeting meeting_of(const ContactLaws& laws, const std::vector<Present>& present,
 }  // namespace
 
 StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
-                     std::span<const int> walls) {
+                     std::span<const WallsPresent> walls) {
   const std::vector<Present> present = count_materials(laws, particles);
   StepLimit least{infinity, ""};
   const auto consider = [&](const StepLimit& limit) {
@@ -146,7 +147,7 @@ StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
   };
   for (int a = 0; a < materials; ++a) {
     if (present[a].count == 0) continue;
-    for (const int wall : walls) {
+    for (const WallsPresent& wall : walls) {
       meet(meeting_with_wall(laws, present[a], a, wall));
       meets[a] = true;
     }

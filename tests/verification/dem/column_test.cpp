@@ -59,11 +59,12 @@ TEST(Column, between_walls_with_friction_saturates_as_janssen_has_it) {
   // the floor carries no more than a height D / (4 μ K) of the column, whatever its own. K is the
   // ratio of the horizontal to the vertical stress: 1 if the stress were isotropic, not below that
   // of active failure, (1 − sin φ) / (1 + sin φ) = 0.4 for an angle of internal friction of 25
-  // degrees (Nedderman, Statics and Kinematics of Granular Materials, 1992). The friction of the
-  // walls is not used up everywhere, least of all near the top, where the stress grows as in a
-  // liquid (Landry, Grest, Silbert & Plimpton, Phys. Rev. E 67, 2003, 041303), which lowers the K
-  // that is seen, at most by half; the floor with some fifty spheres on it fluctuates by a tenth.
-  // So 0.2 to 1.1; without friction at the walls 0.07 would be seen.
+  // degrees (Nedderman, Statics and Kinematics of Granular Materials, 1992). Simulations of spheres
+  // in silos find forces at the walls close to, not at, those of slip, and a region at the top in
+  // which the stress grows as in a liquid, so that Janssen's law holds in part only (Landry, Grest
+  // & Plimpton, arXiv:cond-mat/0302115, 2003). Both lower the K that is seen; we allow half of it
+  // (an estimate of ours); the floor with some fifty spheres on it fluctuates by a tenth. So 0.2
+  // to 1.1; without friction at the walls 0.07 would be seen.
   constexpr double wall_friction = 0.5;
   std::array<double, 2> carried{};  // [m] of the column
   for (const int times : {1, 2}) {

@@ -67,10 +67,13 @@ std::vector<double> flow_on_a_slope(double angle, double friction) {
 }
 
 TEST(Layer, comes_to_rest_below_the_angle_of_repose_and_flows_on_above) {
-  // Spheres with friction 0.5 and no resistance to rolling, springs and dashpots like these: a deep
-  // layer flows steadily from 19.4 to 26 degrees and rests below (Silbert, Ertas, Grest, Halsey,
-  // Levine & Plimpton, Phys. Rev. E 64, 2001, 051302); slow flow has a friction of 0.33 to 0.39,
-  // 18.5 to 21.5 degrees (GDR MiDi, Eur. Phys. J. E 14, 2004, 341-365).
+  // Spheres with friction 0.5 and no resistance to rolling, springs and dashpots like these. What
+  // flows comes to rest below an angle of repose, flows steadily above it up to a largest angle,
+  // and gains speed beyond (Silbert, Landry & Grest, Phys. Fluids 15, 2003, doi 10.1063/1.1521719).
+  // Of a deep layer these are some 19.4 and 26 degrees (Silbert, Ertas, Grest, Halsey, Levine &
+  // Plimpton, Phys. Rev. E 64, 2001, 051302), and slow flow has a friction of 0.33 to 0.39, 18.5
+  // to 21.5 degrees (GDR MiDi, Eur. Phys. J. E 14, 2004, 341-365): these four numbers are quoted
+  // from memory. So 15 and 24 degrees keep 4 and 2 degrees away from where the two begin.
   const std::vector<double> below = flow_on_a_slope(15, 0.5);
   const std::vector<double> above = flow_on_a_slope(24, 0.5);
   const std::vector<double> smooth = flow_on_a_slope(15, 0);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "dem_server/backends/native/native_engine.hpp"
 #include "dem_server/insertion/inflow.hpp"
 #include "dem_server/insertion/insertion.hpp"
 #include "proto/base/errors.hpp"
@@ -206,14 +207,74 @@ TEST(InsertionInRoom, sphere_that_sticks_into_a_wall_is_relaxed_out_of_it) {
   std::filesystem::remove(path, ignored);
 }
 
-TEST(InsertionInRoom, settled_bed_in_a_mesh_that_is_no_box_is_refused) {
+void add_law(Scene& scene) {
+  for (const char* other : {"glass", "walls"}) {
+    PairSettings pair;
+    pair.between = {"glass", other};
+    pair.normal_stiffness = 1000;
+    pair.restitution = 0.5;
+    pair.friction = 0.3;
+    scene.particles.contact.pairs.push_back(pair);
+  }
+  scene.scene.gravity = {0, 0, -9.81};
+  scene.coupling.window = 1e-3;
+  scene.particles.time_step = 5e-5;
+}
+
+double highest(const ParticleState& state) {
+  double top = 0;
+  for (int i = 0; i < state.size(); ++i) {
+    top = std::max(top, state.position[i].z() + state.radius[i]);
+  }
+  return top;
+}
+
+TEST(InsertionInRoom, bed_settles_in_the_pipe_of_a_mesh_and_stays_there) {
   Pipe pipe;
-  pipe.scene.particles.insertion.push_back(entry(InsertionType::settled, 6e-3, 50));
+  add_law(pipe.scene);
+  pipe.scene.particles.insertion.push_back(entry(InsertionType::settled, 6e-3, 200));
+  const ParticleState bed = insert_particles(pipe.scene, pipe.mesh);
+  ASSERT_EQ(bed.size(), 200);
+  // 200 of 113 mm³ on 1963 mm² are 11.5 mm of solid, between 0.4 and 0.64 in a pipe of 8 diameters.
+  EXPECT_GT(highest(bed), 11.5e-3 / 0.64);
+  EXPECT_LT(highest(bed), 11.5e-3 / 0.4 + 6e-3);
+  for (const Vector3& x : bed.position) {
+    EXPECT_LE(std::hypot(x.x(), x.y()), 0.025 - 0.003 + 0.01 * 6e-3);
+    EXPECT_GE(x.z(), 0.003 - 0.01 * 6e-3);
+  }
+  // In the run it stays, but for a sphere at the top that lay so that the springs of friction held
+  // it, which begin anew: such a one may roll into the next hollow.
+  const auto engine = make_native_engine(pipe.scene, pipe.mesh, bed);
+  const std::vector<Vector3> none(bed.id.size(), Vector3::Zero());
+  for (int window = 0; window < 50; ++window) {
+    engine->advance(1e-3, 20, none, {});
+    engine->commit();
+  }
+  double sunk = 0;
+  for (int i = 0; i < bed.size(); ++i) {
+    const Vector3 moved = engine->particles().position[i] - bed.position[i];
+    EXPECT_LT(moved.norm(), 0.5 * 6e-3);
+    sunk += std::abs(moved.z()) / bed.size();
+  }
+  EXPECT_LT(sunk, 0.01 * 6e-3);
+}
+
+TEST(InsertionInRoom, bed_of_a_height_is_cut_in_a_mesh_and_within_may_not_cut_the_mesh) {
+  Pipe pipe;
+  add_law(pipe.scene);
+  pipe.scene.particles.insertion.push_back(entry(InsertionType::settled, 6e-3, 0));
+  InsertionSettings& bed = pipe.scene.particles.insertion.back();
+  bed.height = 0.03;
+  const ParticleState state = insert_particles(pipe.scene, pipe.mesh);
+  EXPECT_LE(highest(state), 0.03);
+  EXPECT_GT(highest(state), 0.03 - 3e-3);
+  bed.within.x = {0.0, 0.025};
   try {
     insert_particles(pipe.scene, pipe.mesh);
     ADD_FAILURE() << "no error was thrown";
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("the mesh is no box"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("ends at x = 0 m inside a mesh"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_server/insertion/entry_sizes.hpp"
 #include "dem_server/insertion/insertion.hpp"
 #include "dem_server/insertion/packing.hpp"
 #include "dem_server/insertion/push_apart.hpp"
@@ -125,6 +126,37 @@ TEST(Amount, number_density_is_that_of_the_region) {
   Scene scene = box(0.02);
   scene.particles.insertion[0].number_density = 1e8;
   EXPECT_EQ(insert(scene).size(), 800);
+}
+
+/// Largest difference of the shares below a diameter from those of a uniform law (Kolmogorov and
+/// Smirnov).
+double off_uniform(std::vector<double> diameters, double low, double high) {
+  std::sort(diameters.begin(), diameters.end());
+  const auto count = static_cast<double>(diameters.size());
+  double worst = 0;
+  for (std::size_t k = 0; k < diameters.size(); ++k) {
+    const double share = (diameters[k] - low) / (high - low);
+    worst = std::max({worst, std::abs(share - static_cast<double>(k) / count),
+                      std::abs(share - static_cast<double>(k + 1) / count)});
+  }
+  return worst;
+}
+
+TEST(Amount, however_it_is_given_is_drawn_from_the_law_of_sizes) {
+  InsertionSettings entry;
+  entry.sizes.emplace();
+  entry.sizes->distribution = SizeDistribution::uniform;
+  entry.sizes->range = {0.5e-3, 1.5e-3};
+  InsertionSettings by_count = entry, by_density = entry, by_fraction = entry;
+  by_count.count = 20000;
+  by_density.number_density = 2e7;
+  by_fraction.fraction = 2e7 * SizeLaw(0, entry.sizes).mean_volume();
+  for (const InsertionSettings& settings : {by_count, by_density, by_fraction}) {
+    const std::vector<double> drawn = entry_diameters("entry", settings, 1e-3);
+    EXPECT_NEAR(static_cast<double>(drawn.size()), 20000, 500);  // 4 deviations of their volume
+    // One in 10^5 draws of 20,000 is farther off than 2.5 / sqrt(n).
+    EXPECT_LT(off_uniform(drawn, 0.5e-3, 1.5e-3), 2.5 / std::sqrt(20000.0));
+  }
 }
 
 TEST(Amount, ten_to_one_packs_and_is_reproducible) {

@@ -97,6 +97,42 @@ TEST(Periodic, contact_across_the_boundary_is_like_any_other) {
   expect_same_motion(inside->particles(), across->particles(), Vector3::Zero(), 1e-11);
 }
 
+TEST(Periodic, contact_across_any_sides_edges_and_corners_pushes_the_same) {
+  // Two spheres that overlap along each of the directions to a neighbouring image.
+  const double overlap = 1e-5;
+  const auto pushed = [&](const Vector3& middle, const Vector3& direction, bool periodic) {
+    Scene scene =
+        box_scene(Vector3::Constant(0.01),
+                  periodic ? std::vector<Axis>{Axis::x, Axis::y, Axis::z} : std::vector<Axis>{});
+    add_laws(scene, 1000, 0.9, 0.3);
+    ParticleState state;
+    const Vector3 half = (1e-3 - 0.5 * overlap) * direction.normalized();
+    for (const Vector3& place : {Vector3(middle - half), Vector3(middle + half)}) {
+      Vector3 inside = place;
+      for (int axis = 0; axis < 3; ++axis) inside[axis] -= 0.01 * std::floor(place[axis] / 0.01);
+      add_sphere(state, inside, Vector3::Zero(), 1e-3);
+    }
+    const auto engine = make_engine(scene, state);
+    run(*engine, 5e-5, 1e-6);
+    return std::pair(engine->particles().velocity[0], engine->particles().velocity[1]);
+  };
+  for (int code = 0; code < 27; ++code) {
+    const Vector3 direction(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
+    if (direction.isZero()) continue;
+    // Across the sides, edge or corner to which it points; inside, nothing is near.
+    Vector3 border = Vector3::Constant(5e-3);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (direction[axis] != 0) border[axis] = 0;
+    }
+    const auto [a, b] = pushed(Vector3::Constant(5e-3), direction, false);
+    const auto [c, d] = pushed(border, direction, true);
+    EXPECT_LT(a.dot(direction), -1e-3) << code;
+    // Positions are rounded by 1e-18 m: 1e-13 of the overlap.
+    EXPECT_LT((c - a).norm(), 1e-10 * a.norm()) << code;
+    EXPECT_LT((d - b).norm(), 1e-10 * a.norm()) << code;
+  }
+}
+
 TEST(Periodic, thin_box_holds_two_images_of_one_pair) {
   // A period of 2.4 radii: each sphere touches the other on both sides, and is pushed by neither.
   Scene scene = box_scene({4.0e-3 - 2e-6, 0.01, 0.01}, {Axis::x});

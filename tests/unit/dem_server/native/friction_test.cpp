@@ -2,102 +2,72 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/unit/dem_server/native/spheres_in_a_box.hpp"
+#include "tests/unit/dem_server/native/oblique_impact.hpp"
 
 namespace fluxpact {
 namespace {
 
+using oblique::approach;
+using oblique::hit_sphere;
+using oblique::hit_wall;
+using oblique::Impact;
+using oblique::r;
+using oblique::time_step;
+using oblique::tolerance;
+
 TEST(Friction, turns_slip_into_rolling_at_five_sevenths) {
-  constexpr double g = 9.81;
-  constexpr double r = 0.5e-3;
-  constexpr double u0 = 0.1;
-  constexpr double k = 1e4;
-  const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * 1e4;
   for (const double mu : {0.2, 0.4, 0.6, 0.8, 1.0}) {
-    Scene scene = box_scene({0.01, 0.01, 0.01});
-    scene.scene.gravity = {0, 0, -g};
-    scene.particles.materials["glass"].density = 1e4;
-    add_pair(scene, "glass", "walls", k, 1.0, mu);
-    scene.particles.contact.pairs.back().tangential_stiffness = k;
-    ParticleState state;
-    add_sphere(state, {1e-3, 5e-3, r - mass * g / k}, {u0, 0, 0}, r, 1e4);
-    const auto engine = make_engine(scene, state);
-    double slip_end = 0;
-    double speed = 0;
-    double surface_speed = 0;
-    constexpr int windows = 2000;
-    for (int window = 1; window <= windows; ++window) {
-      run(*engine, 1e-5, 1e-6);
-      const double u = engine->particles().velocity[0].x();
-      const double rw = r * engine->particles().spin[0].y();
-      if (slip_end == 0 && u <= rw) slip_end = window * 1e-5;
-      // The undamped tangential spring goes on swinging by μ g / w_t = 1e-4 m/s: mean of the end.
-      if (window > windows - 400) {
-        speed += u / 400;
-        surface_speed += rw / 400;
-      }
-    }
-    EXPECT_NEAR(mu * g * slip_end / u0, 2.0 / 7, 1e-2 * 2 / 7) << mu;
-    EXPECT_NEAR(speed / u0, 5.0 / 7, 1e-3) << mu;
-    EXPECT_NEAR(surface_speed / u0, 5.0 / 7, 1e-3) << mu;
+    const oblique::Slip slip = oblique::slip_on_a_wall(mu);
+    EXPECT_NEAR(slip.end, 2.0 / 7, 1e-2 * 2 / 7) << mu;
+    EXPECT_NEAR(slip.speed, 5.0 / 7, 1e-3) << mu;
+    EXPECT_NEAR(slip.surface, 5.0 / 7, 1e-3) << mu;
   }
 }
 
-/// A sphere with velocity (v_n, v_t) hits a wall or an equal sphere at rest.
-struct Impact {
-  double normal, tangential, spin;  // of the first sphere after the impact [mm/s, mm/s, rad/s]
-};
-
-constexpr double r = 1e-3;
-constexpr double speed = 5e-3;
-constexpr double time_step = 1e-6;
-
-Scene impact_scene() {
+/// Spheres of 1 mm, elastic but for friction 0.5 and a rolling friction of 0.02.
+Scene rolling_scene(RollingLaw law) {
   Scene scene = box_scene({0.02, 0.02, 0.02});
-  add_laws(scene, 1000, 0.9, 0.3);
+  add_laws(scene, 1000, 1.0, 0.5);
+  scene.particles.contact.rolling = law;
+  for (PairSettings& pair : scene.particles.contact.pairs) pair.rolling_friction = 0.02;
   return scene;
 }
 
-Impact hit_wall(double tangential) {
+TEST(RollingFriction, slows_a_sphere_that_rolls_on_a_wall) {
+  constexpr double g = 9.81;
+  constexpr double u0 = 0.1;
+  const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * 2250;
+  Scene scene = rolling_scene(RollingLaw::constant_torque);
+  scene.scene.gravity = {0, 0, -g};
   ParticleState state;
-  add_sphere(state, {0.01, 0.01, r + 1e-6}, {tangential, 0, -speed}, r);
-  const auto engine = make_engine(impact_scene(), state);
-  run(*engine, 1e-3, time_step);
-  const ParticleState& after = engine->particles();
-  return {1e3 * after.velocity[0].z(), 1e3 * after.velocity[0].x(), after.spin[0].y()};
-}
-
-Impact hit_sphere(double tangential, double stiffness, double dt) {
-  Scene scene = box_scene({0.02, 0.02, 0.02});
-  add_laws(scene, stiffness, 0.9, 0.3);
-  ParticleState state;
-  add_sphere(state, {0.01, 0.01, 0.01}, {speed, tangential, 0}, r);
-  add_sphere(state, {0.01 + 2 * r + 1e-9, 0.01, 0.01}, Vector3::Zero(), r);
+  add_sphere(state, {5e-3, 0.01, r - mass * g / 1000}, {u0, 0, 0}, r);
+  state.spin[0] = {0, u0 / r, 0};
   const auto engine = make_engine(scene, state);
-  run(*engine, 1000 * dt, dt);
-  const ParticleState& after = engine->particles();
-  EXPECT_NEAR(after.spin[0].z(), after.spin[1].z(), 1e-12);
-  return {1e3 * after.velocity[0].x(), 1e3 * after.velocity[0].y(), after.spin[0].z()};
+  run(*engine, 0.04, 2e-6);
+  // M = μ_r r m g against the spin: u = u0 − 5/7 μ_r g t while it rolls.
+  const double lost = 5.0 / 7 * 0.02 * g * 0.04;
+  // The tangential spring swings by what the torque loads it with at once: 1e-2 of what is lost.
+  EXPECT_NEAR(u0 - engine->particles().velocity[0].x(), lost, 0.02 * lost);
+  EXPECT_NEAR(r * engine->particles().spin[0].y(), u0 - lost, 0.02 * lost);
 }
 
-/// Friction follows |F_n| and so acts in the attractive end of the contact, too: ∫|F_n| dt over m
-/// (1 + e) v_n.
-double impulse_factor(double e) {
-  const double l = std::log(e);
-  const double z = -l / std::sqrt(std::numbers::pi * std::numbers::pi + l * l);
-  const double d = std::sqrt(1 - z * z);
-  // v(τ) of the damped oscillator from v = -1, and its largest value, where the force changes sign.
-  const auto v = [&](double tau) {
-    return -std::exp(-z * tau) * (std::cos(d * tau) - z / d * std::sin(d * tau));
-  };
-  const double most = v((std::numbers::pi - std::atan2(2 * z * d, d * d - z * z)) / d);
-  return ((1 + most) + (most - e)) / (1 + e);
+TEST(RollingFriction, slows_two_spheres_that_roll_on_each_other) {
+  constexpr double push = 1e-3;  // N
+  constexpr double w0 = 50;      // rad/s, as cogs turn
+  const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * 2250;
+  ParticleState state;
+  const Vector3 half(r - 0.5 * push / 1000, 0, 0);
+  add_sphere(state, Vector3::Constant(0.01) - half, Vector3::Zero(), r);
+  add_sphere(state, Vector3::Constant(0.01) + half, Vector3::Zero(), r);
+  state.spin = {Vector3(0, 0, w0), Vector3(0, 0, -w0)};
+  const auto engine = make_engine(rolling_scene(RollingLaw::constant_torque), state);
+  const std::vector<Vector3> force{{push, 0, 0}, {-push, 0, 0}};
+  engine->advance(4e-3, 4000, force, {});
+  // M = μ_r R* F, R* = r / 2, on each against its spin, and I = 2/5 m r².
+  const double lost = 0.02 * 0.5 * r * push * 4e-3 / (0.4 * mass * r * r);
+  EXPECT_NEAR(engine->particles().spin[0].z(), w0 - lost, 1e-3 * lost);
+  EXPECT_NEAR(engine->particles().spin[1].z(), -w0 + lost, 1e-3 * lost);
 }
-
-// Tolerance of all impacts: the moment of touching is known to a sub-step only, which changes the
-// impulse of the dashpot by up to γ dt / 2 = 3.5e-4 (wall), 4.9e-4 (pair) of itself; the dashpot's
-// lag as much again.
-constexpr double tolerance = 1e-3;
 
 TEST(Impact, on_a_wall_rebounds_with_the_restitution) {
   EXPECT_NEAR(hit_wall(0).normal, 4.5, tolerance * 4.5);
@@ -105,31 +75,31 @@ TEST(Impact, on_a_wall_rebounds_with_the_restitution) {
 
 TEST(Impact, on_a_wall_sticks_at_a_small_angle) {
   const Impact impact = hit_wall(0.5e-3);
-  EXPECT_NEAR(impact.tangential, 0.23832, tolerance * 0.5);
-  EXPECT_NEAR(impact.spin, 0.6542, tolerance * 0.6542);
+  EXPECT_NEAR(impact.tangential, oblique::wall_sticks.tangential, tolerance * 0.5);
+  EXPECT_NEAR(impact.spin, oblique::wall_sticks.spin, tolerance * 0.6542);
 }
 
 TEST(Impact, on_a_wall_slips_at_a_large_angle) {
   const Impact impact = hit_wall(15e-3);
-  const double loss = 0.3 * 1.9 * 5 * impulse_factor(0.9);
-  EXPECT_NEAR(impact.tangential, 15 - loss, tolerance * loss);
-  EXPECT_NEAR(impact.spin, 2.5 * loss, tolerance * 2.5 * loss);
+  const Impact exact = oblique::wall_slips(15e-3, oblique::impulse_factor(0.9));
+  EXPECT_NEAR(impact.tangential, exact.tangential, tolerance * (15 - exact.tangential));
+  EXPECT_NEAR(impact.spin, exact.spin, tolerance * exact.spin);
 }
 
 TEST(Impact, of_two_spheres_sticks_at_a_small_angle) {
-  const Impact impact = hit_sphere(0.5e-3, 1000, time_step);
-  EXPECT_NEAR(impact.normal, 0.25, tolerance * 5);
-  EXPECT_NEAR(impact.tangential, 0.36916, tolerance * 0.5);
-  EXPECT_NEAR(impact.spin, -0.3271, 2 * tolerance * 0.3271);
+  const Impact impact = hit_sphere(0.5e-3);
+  EXPECT_NEAR(impact.normal, oblique::pair_sticks.normal, tolerance * 5);
+  EXPECT_NEAR(impact.tangential, oblique::pair_sticks.tangential, tolerance * 0.5);
+  EXPECT_NEAR(impact.spin, oblique::pair_sticks.spin, 2 * tolerance * 0.3271);
 }
 
 TEST(Impact, of_two_spheres_slips_at_a_large_angle) {
   // While they touch the normal turns by v_t t_c / 2r; a hundred times stiffer contact makes that
   // 1.6e-4, so that it changes v_n by 5e-4.
-  const Impact impact = hit_sphere(15e-3, 1e5, 0.1 * time_step);
-  const double loss = 0.5 * 0.3 * 1.9 * 5 * impulse_factor(0.9);
-  EXPECT_NEAR(impact.tangential, 15 - loss, 2 * tolerance * loss);
-  EXPECT_NEAR(impact.spin, -2.5 * loss, 2 * tolerance * 2.5 * loss);
+  const Impact impact = hit_sphere(15e-3, Precision::full, 1e5, 0.1 * time_step);
+  const Impact exact = oblique::pair_slips(15e-3, oblique::impulse_factor(0.9));
+  EXPECT_NEAR(impact.tangential, exact.tangential, 2 * tolerance * (15 - exact.tangential));
+  EXPECT_NEAR(impact.spin, exact.spin, 2 * tolerance * std::abs(exact.spin));
 }
 
 TEST(Impact, is_the_same_in_all_directions) {
@@ -140,9 +110,9 @@ TEST(Impact, is_the_same_in_all_directions) {
     };
     const Vector3 centre = Vector3::Constant(0.01);
     ParticleState state;
-    add_sphere(state, centre, turned({speed, 2e-3, 0}), r);
+    add_sphere(state, centre, turned({approach, 2e-3, 0}), r);
     add_sphere(state, centre + turned({2 * r + 1e-9, 0, 0}), Vector3::Zero(), r);
-    const auto engine = make_engine(impact_scene(), state);
+    const auto engine = make_engine(oblique::scene_of(1000, Precision::full), state);
     run(*engine, 1e-3, time_step);
     // Back to the axes of the first.
     const Vector3& v = engine->particles().velocity[0];

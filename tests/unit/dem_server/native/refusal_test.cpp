@@ -207,5 +207,46 @@ TEST(Kinematic, particle_that_leaves_is_named) {
   expect_contains(text, "z_max");
 }
 
+/// Planes that touch a sphere of 1 mm in the middle of a box, one at each of these directions.
+Scene wedge(const std::vector<Vector3>& directions) {
+  Scene scene = box_scene(Vector3::Constant(0.02));
+  add_laws(scene, 1000, 0.9, 0.3);
+  for (const Vector3& direction : directions) {
+    SurfaceSettings plane;
+    plane.type = SurfaceType::plane;
+    plane.normal = -direction.normalized();
+    plane.point = Vector3::Constant(0.01) + 0.999e-3 * direction.normalized();
+    scene.particles.surfaces.emplace_back(fmt::format("plane{}", scene.particles.surfaces.size()),
+                                          plane);
+  }
+  return scene;
+}
+
+TEST(Refusal, of_a_particle_wedged_into_more_places_than_a_particle_can_touch) {
+  // The corners of a dodecahedron, 42 degrees apart; without some of them there is room.
+  std::vector<Vector3> corners;
+  const double golden = 0.5 * (1 + std::sqrt(5.0));
+  for (int i = 0; i < 8; ++i) {
+    corners.emplace_back(i % 2 * 2 - 1, i / 2 % 2 * 2 - 1, i / 4 * 2 - 1);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double a = (i % 2 * 2 - 1) / golden;
+    const double b = (i / 2 * 2 - 1) * golden;
+    for (const Vector3& corner : {Vector3(0, a, b), Vector3(a, b, 0), Vector3(b, 0, a)}) {
+      corners.push_back(corner);
+    }
+  }
+  ParticleState state;
+  add_sphere(state, Vector3::Constant(0.01), Vector3::Zero(), 1e-3);
+  state.id[0] = 12;
+  const auto wedged = make_engine(wedge(corners), state);
+  const std::string text = message_of<NumericsError>([&] { run(*wedged, 1e-5, 1e-6); });
+  expect_contains(text, "particle 12");
+  expect_contains(text, "more than 16 places");
+  corners.resize(16);
+  const auto held = make_engine(wedge(corners), state);
+  EXPECT_NO_THROW(run(*held, 1e-5, 1e-6));
+}
+
 }  // namespace
 }  // namespace fluxpact

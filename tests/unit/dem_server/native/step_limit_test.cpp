@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 /// The walls' own material comes after the one of the particles.
-constexpr std::array<int, 1> at_walls{1};
+constexpr std::array<WallsPresent, 1> at_walls{{{1, 0}}};
 
 ParticleSettings glass(ContactLaw law, double friction) {
   ParticleSettings settings;
@@ -92,6 +92,89 @@ TEST(StepLimit, hertz_is_a_tenth_of_the_time_of_contact_at_high_speed) {
   const double ratio = 3.5 * 2 * 0.75 / 1.75;
   EXPECT_NEAR(step_limit(ContactLaws(glass(ContactLaw::hertz, 0.5)), spheres(10), at_walls).longest,
               0.1 * contact / std::sqrt(ratio), 1e-12 * contact);
+}
+
+TEST(StepLimit, hertz_knows_the_speed_of_walls) {
+  const ContactLaws laws(glass(ContactLaw::hertz, 0));
+  ParticleState alone;
+  add_sphere(alone, {0, 0, 0}, {3, 0, 0}, 1e-3, 2500);
+  const double effective = 5e6 / (2 * (1 - 0.0625));
+  const double m = mass(1e-3);
+  const std::array<WallsPresent, 1> moving{{{1, 17}}};
+  const double contact = 2.868 * std::pow(m * m / (1e-3 * effective * effective * 20), 0.2);
+  const StepLimit limit = step_limit(laws, alone, moving);
+  EXPECT_NEAR(limit.longest, 0.1 * contact, 1e-12 * contact);
+  expect_contains(limit.reason, "[glass, walls] at 20 m/s");
+}
+
+/// A box whose floor moves, and a sphere of Hertz' law that rests above it.
+Scene moving_floor(const MotionSettings& motion, double time_step) {
+  Scene scene = box_scene({0.02, 0.02, 0.02});
+  const MaterialSettings soft = glass(ContactLaw::hertz, 0).materials.at("glass");
+  scene.particles.materials["glass"] = soft;
+  scene.particles.contact = glass(ContactLaw::hertz, 0).contact;
+  SurfaceSettings floor;
+  floor.type = SurfaceType::plane;
+  floor.normal = Vector3::UnitZ();
+  floor.motion = motion;
+  scene.particles.surfaces.emplace_back("floor", floor);
+  scene.particles.time_step = time_step;
+  scene.coupling.window = time_step;
+  return scene;
+}
+
+TEST(StepLimit, of_an_engine_counts_in_the_speed_of_its_moving_walls) {
+  ParticleState state;
+  add_sphere(state, {0.01, 0.01, 0.01}, {0, 0, 0}, 1e-3, 2500);
+  MotionSettings shifts, shakes, turns;
+  shifts.type = MotionType::translation;
+  shifts.velocity = {0, 0, 20};
+  shakes.type = MotionType::vibration;
+  shakes.frequency = 1000;
+  shakes.amplitude = {0, 0, 20 / (2 * pi * 1000)};
+  turns.type = MotionType::rotation;  // the corners at z = 0 are 0.01 √2 m from the axis
+  turns.point = {0.01, 0.01, 0};
+  turns.direction = Vector3::UnitZ();
+  turns.rate = 20 / (0.01 * std::sqrt(2.0));
+  const double effective = 5e6 / (2 * (1 - 0.0625));
+  const double m = mass(1e-3);
+  const double limit = 0.2868 * std::pow(m * m / (1e-3 * effective * effective * 20), 0.2);
+  for (const MotionSettings& motion : {shifts, shakes, turns}) {
+    EXPECT_NO_THROW(make_engine(moving_floor(motion, 0.99 * limit), state));
+    const std::string text =
+        message_of<ConfigError>([&] { make_engine(moving_floor(motion, 1.01 * limit), state); });
+    expect_contains(text, "[glass, walls] at 20 m/s");
+  }
+  EXPECT_NO_THROW(make_engine(moving_floor({}, 1.01 * limit), state));
+}
+
+TEST(StepLimit, counts_in_from_the_start_what_can_come_in) {
+  Scene scene = box_scene({0.02, 0.02, 0.02}, {Axis::x});
+  add_laws(scene, 1000, 0.9, 0);
+  InflowSettings inflow;
+  inflow.material = "glass";
+  SizeSettings sizes;
+  sizes.distribution = SizeDistribution::uniform;
+  sizes.range = {0.4e-3, 1e-3};
+  inflow.sizes = sizes;
+  scene.particles.inflow.push_back(inflow);
+  const double m = sphere_mass(0.2e-3, 2250);
+  const double limit = 0.1 * pi * std::sqrt(0.5 * m / 1000);
+  scene.particles.time_step = scene.coupling.window = 0.99 * limit;
+  EXPECT_NO_THROW(make_engine(scene, {}));
+  scene.particles.time_step = scene.coupling.window = 1.01 * limit;
+  const std::string text = message_of<ConfigError>([&] { make_engine(scene, {}); });
+  expect_contains(text, "once particles.inflow has begun");
+  expect_contains(text, fmt::format("at most {:.4g} s", limit));
+  // Too large for the period, and of a material without a law.
+  scene.particles.time_step = scene.coupling.window = 1e-6;
+  scene.particles.inflow[0].sizes->range = {1e-3, 0.03};
+  EXPECT_THROW(make_engine(scene, {}), ConfigError);
+  scene.particles.inflow[0].sizes.reset();
+  scene.particles.inflow[0].diameter = 1e-3;
+  scene.particles.materials["steel"].density = 7800;
+  scene.particles.inflow[0].material = "steel";
+  expect_contains(message_of<ConfigError>([&] { make_engine(scene, {}); }), "[steel, ");
 }
 
 TEST(StepLimit, is_named_with_the_contact_and_a_value_that_passes) {

@@ -133,6 +133,25 @@ TEST(SceneChecks, pairs_with_walls_are_not_needed_without_walls) {
   EXPECT_EQ(errors_in(text, {"particles.walls=none"}), "");
 }
 
+TEST(SceneChecks, pairs_are_not_needed_of_what_stands_still) {
+  std::string text = with("      - {between: [steel, steel], normal_stiffness: 3000}\n", "");
+  text = replaced(text, "      - {between: [walls, steel], normal_stiffness: 5000}\n", "");
+  const std::string fixed = replaced(text, "material: steel, diameter: 0.003}",
+                                     "material: steel, diameter: 0.003, motion: fixed}");
+  EXPECT_EQ(errors_in(fixed), "");
+  EXPECT_NE(errors_in(text), "");
+  // With one entry that moves they are, and so is that of what moves with what is fixed.
+  EXPECT_NE(errors_in(replaced(fixed, "    - {type: file, material: glass, path: \"bed.csv\"}\n",
+                               "    - {type: file, material: steel, path: \"bed.csv\"}\n")),
+            "");
+  expect_error(
+      replaced(
+          fixed,
+          "      - {between: [steel, glass], normal_stiffness: 2000, tangential_stiffness: 500}\n",
+          ""),
+      "s.yaml:37:5: particles.contact.pairs: no entry with between: [glass, steel]", {});
+}
+
 TEST(SceneChecks, kinematic_particles_need_no_contact) {
   EXPECT_EQ(errors_in(valid_scene, {"particles.backend=kinematic", "particles.contact={}"}), "");
   EXPECT_NE(errors_in(valid_scene, {"particles.contact={}"}), "");

@@ -91,7 +91,7 @@ inline std::string state_name(const char* kind, const char* column) {
 /// The rows of all blocks one after the other, column by column, and the numbers of the springs of
 /// each contact.
 template <class Kind, class Real>
-void store_kind(const std::vector<ContactBlock<Real>>& blocks, int numbers, EngineState& state) {
+void store_kind(const std::vector<ContactBlock<Real>>& blocks, EngineState& state) {
   std::vector<double>& counts = state.add_scalars(state_name(Kind::name, "of_block"));
   for (const auto& block : blocks) {
     counts.push_back(static_cast<double>(Kind::rows(block).size()));
@@ -106,11 +106,8 @@ void store_kind(const std::vector<ContactBlock<Real>>& blocks, int numbers, Engi
   });
   std::vector<double>& springs = state.add_scalars(state_name(Kind::name, "springs"));
   for (const auto& block : blocks) {
-    const Springs<Real>& held = Kind::springs(block);
-    for (std::size_t contact = 0; contact < Kind::rows(block).size(); ++contact) {
-      for (int n = 0; n < numbers; ++n) {
-        springs.push_back(static_cast<double>(held.row(n)[contact]));
-      }
+    for (const SpringRow<Real>& row : Kind::springs(block).rows) {
+      for (const Real number : row.number) springs.push_back(static_cast<double>(number));
     }
   }
 }
@@ -155,7 +152,7 @@ template <class Visit>
 void SoftSpheres<Real, turning>::visit_scene(const Visit& visit) const {
   visit("real_bytes", double{sizeof(Real)}, "bytes of a number (particles.numerics.precision)");
   visit("spins", turning ? 1.0 : 0.0, "friction");
-  visit("spring_numbers", spring_numbers(laws_.model()), "numbers that a contact remembers");
+  visit("spring_rows", spring_rows(laws_.model()), "rows that a contact remembers");
   visit("materials", laws_.walls(), "number of materials");
   visit("surfaces", walls_.size(), "number of surfaces");
   visit("wall_elements", walls_.elements(), "number of triangles and planes of the walls");
@@ -205,9 +202,7 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
     }
     for (const LoadRow& load : loads_) lever.push_back(as_vector(load.lever));
   }
-  visit_kinds([&]<class Kind>(Kind) {
-    store_kind<Kind>(list.block, spring_numbers(laws_.model()), state);
-  });
+  visit_kinds([&]<class Kind>(Kind) { store_kind<Kind>(list.block, state); });
   store_surfaces(list.block, state);
 }
 
@@ -222,11 +217,11 @@ inline std::vector<std::size_t> read_parts(const StateReader& state, const std::
 }
 
 template <class Kind, class Real, class Limits>
-void restore_kind(const StateReader& state, int numbers, const Limits& limits,
+void restore_kind(const StateReader& state, int spring_rows, const Limits& limits,
                   std::vector<ContactBlock<Real>>& blocks) {
   std::size_t sum = 0;
   const auto parts = read_parts(state, state_name(Kind::name, "of_block"), blocks.size(), sum);
-  const auto each = static_cast<std::size_t>(numbers);
+  const auto each = 4 * static_cast<std::size_t>(spring_rows);
   const auto springs = state.scalars(state_name(Kind::name, "springs"), sum * each);
   std::size_t first = 0;
   for (std::size_t b = 0; b < blocks.size(); first += parts[b++]) {
@@ -244,13 +239,8 @@ void restore_kind(const StateReader& state, int numbers, const Limits& limits,
                 static_cast<Whole>(StateReader::whole(name, first + k, values[first + k], end));
           }
         });
-    Springs<Real>& held = Kind::springs(blocks[b]);
-    held.reset(static_cast<int>(rows.size()), numbers);
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      for (std::size_t n = 0; n < each; ++n) {
-        held.row(static_cast<int>(n))[k] = static_cast<Real>(springs[(first + k) * each + n]);
-      }
-    }
+    const auto here = springs.subspan(first * each, parts[b] * each);
+    Kind::springs(blocks[b]).restore(static_cast<int>(parts[b]), spring_rows, here);
   }
 }
 
@@ -319,7 +309,7 @@ auto SoftSpheres<Real, turning>::restored_list(const StateReader& state, int cou
                        walls_.size()};
   };
   visit_kinds([&]<class Kind>(Kind) {
-    restore_kind<Kind>(state, spring_numbers(laws_.model()), limits, list.block);
+    restore_kind<Kind>(state, spring_rows(laws_.model()), limits, list.block);
   });
   restore_surfaces(state, laws_.walls(), walls_.element_codes(), limits, list.block);
   for (std::size_t i = 0; i < rows; ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dem_server/backends/native/huge_vector.hpp"
@@ -31,6 +32,17 @@ struct Springs {
     rows.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(each), {});
     held.assign(each > 0 ? static_cast<std::size_t>(count) / 8 + 1 : 0, 0);
   }
+  void hold(int contact) {
+    held[contact / 8] = static_cast<std::uint8_t>(held[contact / 8] | 1U << (contact % 8));
+  }
+  /// The rows of a stored state, number by number. All may be held.
+  void restore(int count, int each, std::span<const double> numbers) {
+    reset(count, each);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      rows[n / 4].number[n % 4] = static_cast<Real>(numbers[n]);
+    }
+    for (int contact = 0; each > 0 && contact < count; ++contact) hold(contact);
+  }
   SpringRow<Real>* of(std::int64_t contact) { return rows.data() + contact * rows_each; }
   const SpringRow<Real>* of(std::int64_t contact) const {
     return rows.data() + contact * rows_each;
@@ -43,7 +55,7 @@ struct Springs {
       of(contact)[r] = {
           {sign * old.number[0], sign * old.number[1], sign * old.number[2], old.number[3]}};
     }
-    held[contact / 8] = static_cast<std::uint8_t>(held[contact / 8] | 1U << (contact % 8));
+    hold(contact);
   }
 };
 

@@ -337,7 +337,7 @@ TEST_F(RefusedState, of_another_scene) {
   expect_contains(said(walled, state_.fields()), "kind_y_min");
   Life wet = with_liquid_and_rolling_springs();
   wet.scene.fluid.mesh.periodic = {Axis::y};
-  expect_contains(said(wet, state_.fields()), "spring_numbers");
+  expect_contains(said(wet, state_.fields()), "spring_rows");
   Life fewer = life_;
   fewer.start = random_cloud(count - 1, 1.0);
   expect_contains(said(fewer, state_.fields()), "800 particles");

@@ -57,7 +57,7 @@ std::string notes(const Scene& scene, const MeshQuality& quality, double diamete
         "  warning: {} faces do not lie between the centres of their cells; the most skewed {}\n",
         quality.outside_faces, place_of(quality.skewness));
   }
-  if (scene.interphase.voidage == VoidageMap::centroid && diameter > 0 &&
+  if (scene.interphase.voidage.map == VoidageMap::centroid && diameter > 0 &&
       quality.smallest_cell < centroid_needs * diameter) {
     text += fmt::format(
         "  note: interphase.voidage: centroid wants cells of {} diameters, the smallest has "

@@ -72,7 +72,7 @@ TEST(ReadScene, gives_every_value_of_the_text) {
   EXPECT_EQ(s.particles.insertion[1].type, InsertionType::lattice);
   EXPECT_EQ(s.particles.insertion[2].path, "bed.csv");
   EXPECT_EQ(s.particles.numerics.threads, 2);
-  EXPECT_EQ(s.interphase.voidage, VoidageMap::centroid);
+  EXPECT_EQ(s.interphase.voidage.map, VoidageMap::centroid);
   EXPECT_EQ(s.interphase.drag, DragLaw::wen_yu);
   EXPECT_TRUE(s.interphase.forces.empty());
   EXPECT_EQ(s.output.directory, "runs/elsewhere");

@@ -129,6 +129,30 @@ TEST(ReadScene, says_why_a_formula_or_a_table_is_none) {
                {});
 }
 
+TEST(ReadScene, takes_a_map_alone_or_with_its_options) {
+  const auto voidage = [](const std::string& text) {
+    const Scene scene = read_scene(with("voidage: centroid", "voidage: " + text), "s.yaml");
+    return read_scene(write_scene(scene), "written").interphase.voidage;
+  };
+  EXPECT_EQ(voidage("satellite").map, VoidageMap::satellite);
+  EXPECT_EQ(voidage("satellite").points, 32);
+  EXPECT_EQ(voidage("{map: satellite, points: 50}").points, 50);
+  EXPECT_EQ(voidage("kernel").width, 0);
+  EXPECT_EQ(voidage("{map: kernel, width: 8 mm}").width, 0.008);
+  const VoidageSettings diffusion = voidage("{map: diffusion, width: 6 mm, from: centroid}");
+  EXPECT_EQ(diffusion.width, 0.006);
+  EXPECT_EQ(diffusion.from, DiffusedMap::centroid);
+  EXPECT_EQ(voidage("{smallest: 0.3}").smallest, 0.3);
+  EXPECT_EQ(voidage("{smallest: 0.3}").map, VoidageMap::exact);
+  expect_error(with("voidage: centroid", "voidage: diffusion"),
+               "s.yaml:64:12: interphase.voidage.width: missing; required with `map: kernel | ",
+               {});
+  expect_error(with("voidage: centroid", "voidage: exat"),
+               "s.yaml:64:12: interphase.voidage.map: ", {"`exat`", "nearest: `exact`"});
+  expect_error(with("voidage: centroid", "voidage: {map: exact, width: 1 mm}"),
+               "s.yaml:64:25: interphase.voidage.width: has no meaning here", {});
+}
+
 TEST(WriteScene, keeps_graded_boxes_and_meshes_of_files) {
   const std::string box = "box: {lower: [0, 0, 0], upper: [0.1, 0.1, 0.2], cells: [4, 4, 8]";
   Scene scene = read_scene(

@@ -1,6 +1,5 @@
 #include "dem_server/interphase/diffusion.hpp"
 
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -40,9 +40,36 @@ LatticeOverlap::LatticeOverlap(const Lattice& lattice) {
   for (int k = 0; k < 3; ++k) {
     const auto& nodes = lattice.nodes[k];
     const int intervals = static_cast<int>(nodes.size()) - 1;
-    axes_[k] = {nodes, intervals / (nodes.back() - nodes.front()), stride, lattice.periodic[k]};
+    axes_[k] = {nodes,        nodes.front(),
+                nodes.back(), intervals / (nodes.back() - nodes.front()),
+                stride,       lattice.periodic[k]};
     stride *= intervals;
   }
+}
+
+// -1 outside. The guess is right for equal cells; from there it is a short walk.
+int LatticeOverlap::Axis::interval(double& x) const {
+  if (!(x >= front && x < back)) {
+    if (!periodic || !std::isfinite(x)) return -1;
+    const double period = back - front;
+    x -= period * std::floor((x - front) / period);
+    if (!(x < back)) return -1;  // rounded up to the other end
+  }
+  const int last = static_cast<int>(nodes.size()) - 2;
+  int i = std::min(static_cast<int>((x - front) * per_length), last);
+  while (i < last && x >= nodes[i + 1]) ++i;
+  while (i > 0 && x < nodes[i]) --i;
+  return i;
+}
+
+int LatticeOverlap::cell_of(Vector3 point) const {
+  int cell = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = axes_[k].interval(point[k]);
+    if (i < 0) return -1;
+    cell += i * axes_[k].stride;
+  }
+  return cell;
 }
 
 bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
@@ -52,19 +79,10 @@ bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
   int cell = 0;
   for (int k = 0; k < 3; ++k) {
     const Axis& axis = axes_[k];
-    const double front = axis.nodes.front();
-    const double back = axis.nodes.back();
     double x = ball.centre[k];
-    if (!(x >= front && x < back)) {
-      if (!axis.periodic || !std::isfinite(x)) return false;
-      const double period = back - front;
-      x -= period * std::floor((x - front) / period);
-      if (!(x < back)) return false;  // rounded up to the other end
-    }
+    const int i = axis.interval(x);
+    if (i < 0) return false;
     const int last = static_cast<int>(axis.nodes.size()) - 2;
-    int i = std::min(static_cast<int>((x - front) * axis.per_length), last);
-    while (i < last && x >= axis.nodes[i + 1]) ++i;
-    while (i > 0 && x < axis.nodes[i]) --i;
     cell += i * axis.stride;
     const double low = x - axis.nodes[i];
     const double high = axis.nodes[i + 1] - x;

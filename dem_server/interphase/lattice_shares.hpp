@@ -24,6 +24,9 @@ class LatticeOverlap {
  public:
   explicit LatticeOverlap(const Lattice& lattice);
 
+  /// The cell that holds a point [m]; -1 if none does, or it lies in the last plane of an axis.
+  int cell_of(Vector3 point) const;
+
   /// False if the ball is cut by two planes of one axis, its centre is outside, or its radius is
   /// not positive: nothing is said of it then.
   bool find(const Ball& ball, LatticeShares& shares) const;
@@ -31,10 +34,14 @@ class LatticeOverlap {
  private:
   /// Its intervals.
   struct Axis {
-    std::vector<double> nodes;  ///< [m]
-    double per_length = 0;      ///< intervals over the whole length [1/m]
-    int stride = 1;             ///< of the cell's number
+    std::vector<double> nodes;   ///< [m]
+    double front = 0, back = 0;  ///< [m]
+    double per_length = 0;       ///< intervals over the whole length [1/m]
+    int stride = 1;              ///< of the cell's number
     bool periodic = false;
+
+    /// Of x, which is brought into the period.
+    int interval(double& x) const;
   };
 
   std::array<Axis, 3> axes_;

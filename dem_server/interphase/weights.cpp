@@ -76,6 +76,11 @@ void WeightsBuilder::build(const ParticleState& particles, std::int64_t step,
   transpose(weights);
 }
 
+int WeightsBuilder::cell_of(const Vector3& point) const {
+  const int cell = lattice_ ? lattice_->cell_of(point) : -1;
+  return cell >= 0 ? cell : locator_.cell_of(point);
+}
+
 /// Of the map about the centre of a particle [m].
 double WeightsBuilder::reach(double radius) const {
   if (map_ != VoidageMap::kernel) return radius;
@@ -92,7 +97,7 @@ bool WeightsBuilder::append_row(const Ball& ball, Row& row) const {
     }
     return ball.radius < locator_.shortest_period();
   }
-  const int home = locator_.cell_of(ball.centre);
+  const int home = cell_of(ball.centre);
   if (home < 0 || !(reach(ball.radius) < locator_.shortest_period())) return false;
   switch (map_) {
     case VoidageMap::exact:
@@ -137,7 +142,7 @@ bool WeightsBuilder::append_points(int home, const Ball& ball, Row& row) const {
   double inside = 0;
   if (!shapes_.holds(home, {ball.centre, 1.06 * ball.radius})) {  // points may lie a little outside
     for (const Vector3& point : points_) {
-      const int cell = locator_.cell_of(ball.centre + ball.radius * point);
+      const int cell = cell_of(ball.centre + ball.radius * point);
       if (cell < 0) continue;
       inside += 1;
       const auto begin = row.cells.begin() + static_cast<std::ptrdiff_t>(first);
@@ -189,7 +194,12 @@ bool WeightsBuilder::append_bell(int home, const Ball& ball, Row& row) const {
   return true;
 }
 
-void WeightsBuilder::join_rows(const ParticleState& particles, ParticleCellWeights& weights) const {
+void WeightsBuilder::join_rows(const ParticleState& particles, ParticleCellWeights& weights) {
+  if (threads_ == 1) {  // nothing to join
+    std::swap(weights.row_cells, rows_[0].cells);
+    std::swap(weights.row_weights, rows_[0].weights);
+    return;
+  }
   std::size_t entries = 0;
   for (const Row& row : rows_) entries += row.cells.size();
   weights.row_cells.resize(entries);

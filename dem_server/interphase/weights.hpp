@@ -106,7 +106,8 @@ class WeightsBuilder {
   bool append_points(int home, const Ball& ball, Row& row) const;
   bool append_bell(int home, const Ball& ball, Row& row) const;
   double reach(double radius) const;
-  void join_rows(const ParticleState& particles, ParticleCellWeights& weights) const;
+  int cell_of(const Vector3& point) const;
+  void join_rows(const ParticleState& particles, ParticleCellWeights& weights);
   void transpose(ParticleCellWeights& weights);
   [[noreturn]] void refuse(const ParticleState& particles, int particle, std::int64_t step) const;
 

@@ -145,12 +145,12 @@ TEST(ReadScene, takes_a_map_alone_or_with_its_options) {
   EXPECT_EQ(voidage("{smallest: 0.3}").smallest, 0.3);
   EXPECT_EQ(voidage("{smallest: 0.3}").map, VoidageMap::exact);
   expect_error(with("voidage: centroid", "voidage: diffusion"),
-               "s.yaml:64:12: interphase.voidage.width: missing; required with `map: kernel | ",
+               "s.yaml:50:12: interphase.voidage.width: missing; required with `map: kernel | ",
                {});
   expect_error(with("voidage: centroid", "voidage: exat"),
-               "s.yaml:64:12: interphase.voidage.map: ", {"`exat`", "nearest: `exact`"});
+               "s.yaml:50:12: interphase.voidage.map: ", {"`exat`", "nearest: `exact`"});
   expect_error(with("voidage: centroid", "voidage: {map: exact, width: 1 mm}"),
-               "s.yaml:64:25: interphase.voidage.width: has no meaning here", {});
+               "s.yaml:50:25: interphase.voidage.width: has no meaning here", {});
 }
 
 TEST(WriteScene, keeps_graded_boxes_and_meshes_of_files) {

@@ -460,6 +460,10 @@ TEST(OverFullCells, pass_on_to_the_nearest_room) {
   EXPECT_NEAR(finder.move(1, solids, moves), 0.9, 1e-15);
   const std::vector<double> near{0, 0, 0.45, 0.8, 0.45, 0, 0};
   for (int c = 0; c < 7; ++c) EXPECT_NEAR(solids[c], near[c], 1e-15);
+  solids = {0, 0, 0.5, 1.0, 0.3, 0, 0};  // 0.2 too much for rooms of 0.3 and 0.5
+  finder.move(1, solids, moves);
+  EXPECT_NEAR(solids[2], 0.575, 1e-15);
+  EXPECT_NEAR(solids[4], 0.425, 1e-15);
   // In proportion to room, as far as it goes; the rest to the next.
   solids = {0, 0.8, 0.8, 2.4, 0.6, 0, 0};
   finder.move(1, solids, moves);

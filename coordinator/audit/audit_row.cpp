@@ -77,6 +77,10 @@ constexpr auto all_columns = std::to_array<AuditColumn>({
      RealColumn{[](Row row) { return row.wall_dem; }}},
     {"wall_exchange", "s", "time the exchange and the audit took", false,
      RealColumn{[](Row row) { return row.wall_exchange; }}},
+    {"excess_moved", "m3",
+     "solids volume that cells below interphase.voidage.smallest have passed to other cells, which "
+     "hold it at the window's end",
+     true, RealColumn{[](Row row) { return row.particles.window.excess_moved; }}},
 });
 
 constexpr auto all_flow_columns = std::to_array<AuditColumn>({

@@ -14,8 +14,9 @@ namespace fluxpact {
 
 /// What was sent about one window.
 struct ParticleWindow {
-  std::int64_t count = 0;  ///< at the window's end
-  double mass = 0;         ///< [kg]
+  std::int64_t count = 0;   ///< at the window's end
+  double mass = 0;          ///< [kg]
+  double excess_moved = 0;  ///< solids that over-full cells have passed to others [m³]
   std::int64_t entered = 0;
   std::int64_t left = 0;
   std::int64_t waiting = 0;           ///< due so far, without room

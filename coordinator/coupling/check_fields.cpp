@@ -36,8 +36,8 @@ void check_particle_fields(const Message& result, const Scene& scene, const Mesh
   fields.vectors(field::drag_source, mesh.cells());
   fields.vectors(field::impulse_given, mesh.cells());
   fields.vectors(field::particle_velocity, mesh.cells());
-  for (const auto* name :
-       {field::particle_volume, field::particle_count, field::particle_mass, field::wall_seconds})
+  for (const auto* name : {field::particle_volume, field::particle_count, field::particle_mass,
+                           field::excess_moved, field::wall_seconds})
     fields.number(name);
   if (particles_flow(scene)) {
     fields.vectors(field::particle_momentum_entered, 1);

@@ -74,6 +74,7 @@ ParticleWindow particle_window(const Fields& particles, bool flow) {
   ParticleWindow window;
   window.count = whole(particles, field::particle_count);
   window.mass = particles.number(field::particle_mass);
+  window.excess_moved = particles.number(field::excess_moved);
   if (!flow) return window;
   window.entered = whole(particles, field::particles_entered);
   window.left = whole(particles, field::particles_left);

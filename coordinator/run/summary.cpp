@@ -67,6 +67,9 @@ void Summary::add(const AuditRow& row, const CommittedState& state, double recor
   largest_handover_ =
       std::max({largest_handover_, row.momentum.handover_error, row.momentum.impulse_error});
   largest_particle_error_ = std::max(largest_particle_error_, row.particles.mass_error);
+  const double excess = row.particles.window.excess_moved;
+  largest_excess_ = std::max(largest_excess_, excess);
+  excess_windows_ += excess > 0 ? 1 : 0;
   largest_correction_ =
       std::max(largest_correction_, fields_of(state.fluid).number(field::closure_correction));
   if (row.step > second_half_) {
@@ -135,6 +138,12 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
         "of the radius",
         figures_.at(field::precision_overlap_rms), figures_.at(field::precision_overlap_max),
         figures_.at(field::precision_position_rms), figures_.at(field::precision_position_max));
+  }
+  if (excess_windows_ > 0) {
+    line(
+        "  over-full cells       passed on up to {:.3g} m3 of particles a window, in {} of {} "
+        "windows",
+        largest_excess_, excess_windows_, windows_);
   }
   if (pressure_windows_ > 0) {
     const double drop = pressure_drop_.value() / static_cast<double>(pressure_windows_);

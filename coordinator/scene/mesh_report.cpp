@@ -44,6 +44,9 @@ std::string patches_of(const Mesh& mesh) {
 /// Below three diameters a particle that crosses a face moves much of a cell's solids at once.
 constexpr double centroid_needs = 3;
 
+// Below this many diameters a cell holds a sphere or a gap, not a mean of some.
+constexpr double single_spheres = 1.5;
+
 std::string notes(const Scene& scene, const MeshQuality& quality, double diameter) {
   std::string text;
   if (quality.steep_faces > 0) {
@@ -57,12 +60,21 @@ std::string notes(const Scene& scene, const MeshQuality& quality, double diamete
         "  warning: {} faces do not lie between the centres of their cells; the most skewed {}\n",
         quality.outside_faces, place_of(quality.skewness));
   }
-  if (scene.interphase.voidage == VoidageMap::centroid && diameter > 0 &&
+  if (scene.interphase.voidage.map == VoidageMap::centroid && diameter > 0 &&
       quality.smallest_cell < centroid_needs * diameter) {
     text += fmt::format(
         "  note: interphase.voidage: centroid wants cells of {} diameters, the smallest has "
         "{:.3g}; `exact` takes any\n",
         centroid_needs, quality.smallest_cell / diameter);
+  }
+  const VoidageMap map = scene.interphase.voidage.map;
+  if ((map == VoidageMap::exact || map == VoidageMap::satellite) && diameter > 0 &&
+      quality.smallest_cell < single_spheres * diameter) {
+    text += fmt::format(
+        "  note: the smallest cell has {:.3g} diameters: below {} the voidage is that of single "
+        "spheres, and cells in a sphere pass on what they cannot hold; `kernel` and `diffusion` of "
+        "interphase.voidage smooth it over a width\n",
+        quality.smallest_cell / diameter, single_spheres);
   }
   return text;
 }

@@ -19,6 +19,8 @@ CellShapes::CellShapes(const Mesh& mesh) : cells_(mesh.cells()), lattice_(mesh.l
   for (int face = 0; face < mesh.faces(); ++face) add_facets(mesh, face, first_facet);
   attach_facets(mesh, first_facet);
   bounds_.resize(cells_);
+  centres_ = mesh.cell_centres;
+  volumes_ = mesh.cell_volumes;
   convex_.resize(cells_);
   for (int cell = 0; cell < cells_; ++cell) measure(cell);
 }
@@ -163,6 +165,22 @@ double CellShapes::overlap(int cell, const Ball& ball) const {
     sum += use.side * signed_cone_overlap(seen, facet(use.facet));
   }
   return sum;
+}
+
+bool CellShapes::holds(int cell, const Ball& ball) const {
+  if (lattice_) {
+    const Bounds box = bounds(cell);
+    return (ball.centre - box.lower).minCoeff() >= ball.radius &&
+           (box.upper - ball.centre).minCoeff() >= ball.radius;
+  }
+  if (convex_[cell] == 0) return false;
+  for (int k = cell_offsets_[cell]; k < cell_offsets_[cell + 1]; ++k) {
+    const CellFacet& use = cell_facets_[k];
+    const Facet plane = facet(use.facet);
+    const double height = use.side * plane.normal.dot(plane.loop[0] + use.shift - ball.centre);
+    if (height < ball.radius) return false;
+  }
+  return true;
 }
 
 bool CellShapes::contains(int cell, const Vector3& point) const {

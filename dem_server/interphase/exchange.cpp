@@ -56,6 +56,14 @@ ExchangeSettings exchange_settings(const Scene& scene, bool mobile) {
   return settings;
 }
 
+FluidSeen FluidView::of(const FluidSeen& fluid, const ParticleCellWeights& weights) {
+  FluidSeen seen = fluid;
+  seen.velocity = weights.seen(fluid.velocity, velocity_);
+  if (fluid.solved)
+    seen.pressure_gradient = weights.seen(fluid.pressure_gradient, pressure_gradient_);
+  return seen;
+}
+
 void measure_bulk(const ParticleState& particles, ParticleBulk& bulk) {
   particle_volumes(particles, bulk.volume);
   bulk.mass.resize(bulk.volume.size());
@@ -144,6 +152,8 @@ void deposit_offer(const Offer& offer, int threads, std::span<double> drag_coeff
     drag_coefficient[cell] = coefficient;
     drag_source[cell] = source;
   }
+  offer.weights.spread(drag_coefficient);
+  offer.weights.spread(drag_source);
 }
 
 void deposit_vectors(const ParticleCellWeights& weights, std::span<const Vector3> particle_values,
@@ -156,6 +166,7 @@ void deposit_vectors(const ParticleCellWeights& weights, std::span<const Vector3
         [&](int particle) -> const Vector3& { return particle_values[particle]; });
     cell_values[cell] = sum;
   }
+  weights.spread(cell_values);
 }
 
 }  // namespace fluxpact

@@ -37,11 +37,22 @@ struct ExchangeSettings {
 /// From the scene; `mobile` from the engine. threads = 0 in the scene: all cores.
 ExchangeSettings exchange_settings(const Scene& scene, bool mobile);
 
-/// The fluid's newest state, one row a cell.
+/// The fluid's newest state, one row a cell, as `FluidView` has it for the weights in question.
 struct FluidSeen {
   bool solved = false;  ///< false before the first fluid step: no drag impulse, no pressure yet
   std::span<const Vector3> velocity;           ///< u [m/s]
   std::span<const Vector3> pressure_gradient;  ///< ∇p_d [Pa/m], p_d = p − ρ g·x
+};
+
+/// The fluid as the particles of some weights see it: `fluid` itself, or a copy whose fields have
+/// gone through `ParticleCellWeights::seen`. The buffers are reused.
+class FluidView {
+ public:
+  FluidSeen of(const FluidSeen& fluid, const ParticleCellWeights& weights);
+
+ private:
+  std::vector<Vector3> velocity_;
+  std::vector<Vector3> pressure_gradient_;
 };
 
 /// What one window offers to the fluid and keeps for the next: committed and candidate of it swap.
@@ -91,7 +102,8 @@ struct Prediction {
 };
 
 /// Fills weights (already built), k and v* of an offer for a coming window of `offer.window`.
-/// `voidage`: of the new positions, one a cell. Buffers inside are reused.
+/// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are
+/// reused.
 class OfferMaker {
  public:
   void make(const ExchangeSettings& settings, const FluidSeen& fluid,

@@ -65,6 +65,40 @@ double cut_ball_volume(double radius, double height) {
   return std::numbers::pi / 3 * (radius + height) * (radius + height) * (2 * radius - height);
 }
 
+// A body bounded by the sphere and by planes through which the centre sees it: a third of the
+// height times the area for each. The spherical part has the area (angles − arcs' curvature) R².
+double beyond_edge(double radius, double a, double b) {
+  const double square = radius * radius;
+  const double c_squared = square - a * a - b * b;
+  if (c_squared <= 0) return 0;
+  const double c = std::sqrt(c_squared);
+  const double angle = std::atan2(radius * c, a * b);
+  return 2.0 / 3 * (square * radius * angle + a * b * c) -
+         (a / 3) * (3 * square - a * a) * std::atan2(c, b) -
+         (b / 3) * (3 * square - b * b) * std::atan2(c, a);
+}
+
+double beyond_corner(double radius, const Vector3& distances) {
+  const double square = radius * radius;
+  if (distances.squaredNorm() >= square) return 0;
+  double angles = -std::numbers::pi;
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = distances[axis];
+    const double b = distances[(axis + 1) % 3];
+    const double c = distances[(axis + 2) % 3];
+    // The piece of the disc in the plane at a: from (b, c) to its rim at (x, c) and (b, y).
+    const double disc = square - a * a;
+    const double x = std::sqrt(disc - c * c);
+    const double y = std::sqrt(disc - b * b);
+    const double arc = std::atan2(x * y - b * c, x * b + y * c);
+    const double area = 0.5 * (disc * arc - c * (x - b) - b * (y - c));
+    angles += std::atan2(radius * y, a * b);
+    sum += a * (square * arc + area);
+  }
+  return (square * radius * angles - sum) / 3;
+}
+
 double signed_cone_overlap(const Ball& ball, const Facet& facet) {
   const PlaneCut cut = cut_by_plane(ball.radius, facet.normal.dot(facet.loop[0] - ball.centre));
   double sum = 0;

@@ -31,6 +31,14 @@ double ball_volume(double radius);
 /// π/3 (R + h)² (2R − h) [m³], for |h| <= R.
 double cut_ball_volume(double radius, double height);
 
+/// Ball cut by two planes at right angles, at distances a, b >= 0 of its centre: the part beyond
+/// both [m³], 0 if there is none. Rounding error of some 1e-16 R³, as of `beyond_corner`. By the
+/// theorem of Gauss and Bonnet for the spherical part of its surface.
+double beyond_edge(double radius, double a, double b);
+
+/// The same for three planes at right angles, at distances >= 0.
+double beyond_corner(double radius, const Vector3& distances);
+
 /// Volume [m³] that the ball shares with the cone from its centre to the facet; negative if the
 /// facet shows its back to the centre. Rounding error of the order of 1e-16 R³, wherever the centre
 /// stands: in the facet's plane, on an edge, on a corner.

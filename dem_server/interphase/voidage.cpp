@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "proto/base/compensated_sum.hpp"
-#include "proto/base/errors.hpp"
 
 namespace fluxpact {
 
@@ -12,45 +11,49 @@ void particle_volumes(const ParticleState& particles, std::vector<double>& volum
   std::ranges::transform(particles.radius, volumes.begin(), ball_volume);
 }
 
-void map_voidage(const ParticleCellWeights& weights, std::span<const double> particle_volume,
-                 std::span<const double> cell_volumes, std::span<const Vector3> cell_centres,
-                 std::int64_t step, int threads, std::span<double> voidage) {
+double map_voidage(ParticleCellWeights& weights, std::span<const double> particle_volume,
+                   std::span<const double> cell_volumes, ExcessFinder& excess, std::int64_t step,
+                   int threads, std::span<double> voidage) {
+  const std::span<double> solids = voidage;  // [m³] first
   const int cells = weights.cells();
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int cell = 0; cell < cells; ++cell) {
-    CompensatedSum solids;  // cells may hold many particles, far smaller than they are
+    CompensatedSum sum;  // cells may hold many particles, far smaller than they are
     weights.deposit(
-        cell, [&](double share) { solids.add(share); },
+        cell, [&](double share) { sum.add(share); },
         [&](int particle) { return particle_volume[particle]; });
-    voidage[cell] = 1 - solids.value() / cell_volumes[cell];
+    solids[cell] = sum.value();
   }
-  for (int cell = 0; cell < cells; ++cell) {
-    if (voidage[cell] >= smallest_voidage) continue;
-    const Vector3& centre = cell_centres[cell];
-    throw NumericsError(
-        "cell {} at ({}, {}, {}) m has the voidage {} after step {}, below {}: the particles in it "
-        "need more room than it has; use larger cells, or interphase.voidage: exact if it is "
-        "centroid",
-        cell, centre.x(), centre.y(), centre.z(), voidage[cell], step, smallest_voidage);
-  }
+  if (weights.diffusion != nullptr) weights.diffusion->spread(solids);
+  const double moved = excess.move(step, solids, weights.excess);
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int cell = 0; cell < cells; ++cell) voidage[cell] = 1 - solids[cell] / cell_volumes[cell];
+  return moved;
 }
 
 void map_velocity(const ParticleCellWeights& weights, std::span<const double> particle_volume,
                   std::span<const Vector3> particle_velocity, int threads,
-                  std::span<Vector3> velocity) {
+                  std::vector<double>& solids, std::span<Vector3> velocity) {
+  solids.resize(velocity.size());
+  const std::span<double> volumes(solids);
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int cell = 0; cell < weights.cells(); ++cell) {
     double volume = 0;
     Vector3 moment = Vector3::Zero();
-    weights.deposit(
-        cell, [&](double share) { volume += share; },
-        [&](int particle) { return particle_volume[particle]; });
-    weights.deposit(
-        cell, [&](const Vector3& share) { moment += share; },
-        [&](int particle) -> Vector3 {
-          return particle_volume[particle] * particle_velocity[particle];
-        });
-    velocity[cell] = volume > 0 ? Vector3(moment / volume) : Vector3(Vector3::Zero());
+    for (auto k = weights.cell_offsets[cell]; k < weights.cell_offsets[cell + 1]; ++k) {
+      const int particle = weights.cell_particles[k];
+      const double share = weights.cell_weights[k] * particle_volume[particle];
+      volume += share;
+      moment += share * particle_velocity[particle];
+    }
+    volumes[cell] = volume;
+    velocity[cell] = moment;
+  }
+  weights.spread(volumes);
+  weights.spread(velocity);
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int cell = 0; cell < weights.cells(); ++cell) {
+    if (volumes[cell] > 0) velocity[cell] /= volumes[cell];
   }
 }
 

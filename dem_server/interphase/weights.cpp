@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem_server/interphase/satellites.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -13,6 +14,12 @@ namespace {
 // Overlaps below this share of R³ are the rounding of a ball that does not touch the cell.
 constexpr double touching = 1e-14;
 
+// Where the bell (1 − q²)³ has half its height: q² = 1 − 2^(−1/3).
+const double bell_half_height = std::sqrt(1 - 1 / std::cbrt(2.0));
+
+// Of the bell at half its height, in diameters of the particle, if the scene gives no width.
+constexpr double default_bell_width = 4;
+
 // First particle of a thread's equal share.
 int share_begin(int particles, int thread, int threads) {
   return static_cast<int>(static_cast<std::int64_t>(particles) * thread / threads);
@@ -20,11 +27,21 @@ int share_begin(int particles, int thread, int threads) {
 
 }  // namespace
 
-WeightsBuilder::WeightsBuilder(const Mesh& mesh, VoidageMap map, int threads)
-    : shapes_(mesh), locator_(mesh, shapes_), map_(map), threads_(threads) {
-  if (map == VoidageMap::prescribed) {
-    throw ConfigError("interphase.voidage: 'prescribed' maps no particles; use exact or centroid");
+WeightsBuilder::WeightsBuilder(const Mesh& mesh, const VoidageSettings& settings, int threads)
+    : shapes_(mesh),
+      locator_(mesh, shapes_),
+      map_(settings.map),
+      half_width_(0.5 * settings.width),
+      threads_(threads) {
+  if (map_ == VoidageMap::prescribed) {
+    throw ConfigError("interphase.voidage: 'prescribed' maps no particles; use another map");
   }
+  if (map_ == VoidageMap::diffusion) {
+    diffusion_.emplace(mesh, settings.width, threads);
+    map_ = settings.from == DiffusedMap::exact ? VoidageMap::exact : VoidageMap::centroid;
+  }
+  if (map_ == VoidageMap::satellite) points_ = satellite_points(settings.points);
+  if (shapes_.lattice()) lattice_.emplace(*shapes_.lattice());
   rows_.resize(static_cast<std::size_t>(threads));
 }
 
@@ -53,15 +70,51 @@ void WeightsBuilder::build(const ParticleState& particles, std::int64_t step,
   for (const Row& row : rows_) {
     if (row.bad_particle >= 0) refuse(particles, row.bad_particle, step);
   }
+  weights.diffusion = diffusion_ ? &*diffusion_ : nullptr;
+  weights.excess.clear();
   join_rows(particles, weights);
   transpose(weights);
 }
 
+int WeightsBuilder::cell_of(const Vector3& point) const {
+  const int cell = lattice_ ? lattice_->cell_of(point) : -1;
+  return cell >= 0 ? cell : locator_.cell_of(point);
+}
+
+/// Of the map about the centre of a particle [m].
+double WeightsBuilder::reach(double radius) const {
+  if (map_ != VoidageMap::kernel) return radius;
+  return (half_width_ > 0 ? half_width_ : default_bell_width * radius) / bell_half_height;
+}
+
 /// False if the particle cannot be mapped.
 bool WeightsBuilder::append_row(const Ball& ball, Row& row) const {
-  const int home = locator_.cell_of(ball.centre);
-  if (home < 0 || !(ball.radius < locator_.shortest_period())) return false;
-  if (map_ == VoidageMap::centroid) {
+  if (map_ == VoidageMap::exact && lattice_ && lattice_->find(ball, row.shares)) {
+    const double total = row.shares.total;
+    for (int k = 0; k < row.shares.count; ++k) {
+      row.cells.push_back(row.shares.cells[k]);
+      row.weights.push_back(row.shares.volumes[k] / total);
+    }
+    return ball.radius < locator_.shortest_period();
+  }
+  const int home = cell_of(ball.centre);
+  if (home < 0 || !(reach(ball.radius) < locator_.shortest_period())) return false;
+  switch (map_) {
+    case VoidageMap::exact:
+      return append_exact(home, ball, row);
+    case VoidageMap::satellite:
+      return append_points(home, ball, row);
+    case VoidageMap::kernel:
+      return append_bell(home, ball, row);
+    default:
+      row.cells.push_back(home);
+      row.weights.push_back(1.0);
+      return true;
+  }
+}
+
+bool WeightsBuilder::append_exact(int home, const Ball& ball, Row& row) const {
+  if (shapes_.holds(home, ball)) {
     row.cells.push_back(home);
     row.weights.push_back(1.0);
     return true;
@@ -83,7 +136,70 @@ bool WeightsBuilder::append_row(const Ball& ball, Row& row) const {
   return true;
 }
 
-void WeightsBuilder::join_rows(const ParticleState& particles, ParticleCellWeights& weights) const {
+/// Points outside the domain do not count; if all are, all is in the cell of the centre.
+bool WeightsBuilder::append_points(int home, const Ball& ball, Row& row) const {
+  const std::size_t first = row.cells.size();
+  double inside = 0;
+  if (!shapes_.holds(home, {ball.centre, 1.06 * ball.radius})) {  // points may lie a little outside
+    for (const Vector3& point : points_) {
+      const int cell = cell_of(ball.centre + ball.radius * point);
+      if (cell < 0) continue;
+      inside += 1;
+      const auto begin = row.cells.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto known = std::find(begin, row.cells.end(), cell);
+      if (known != row.cells.end()) {
+        row.weights[static_cast<std::size_t>(known - row.cells.begin())] += 1;
+      } else {
+        row.cells.push_back(cell);
+        row.weights.push_back(1);
+      }
+    }
+  }
+  if (inside == 0) {
+    row.cells.push_back(home);
+    row.weights.push_back(1.0);
+    return true;
+  }
+  for (std::size_t k = first; k < row.weights.size(); ++k) row.weights[k] /= inside;
+  return true;
+}
+
+bool WeightsBuilder::append_bell(int home, const Ball& ball, Row& row) const {
+  const double radius = reach(ball.radius);
+  if (!(ball.radius > 0) || !std::isfinite(radius)) return false;
+  if (shapes_.holds(home, {ball.centre, radius})) {
+    row.cells.push_back(home);
+    row.weights.push_back(1.0);
+    return true;
+  }
+  row.images.clear();
+  locator_.touching({ball.centre, radius}, row.images);
+  const std::size_t first = row.cells.size();
+  const double per_square = 1 / (radius * radius);
+  double sum = 0;
+  for (const CellImage& image : row.images) {
+    double weight = 0;
+    const Ball bell{image.point, radius};
+    shapes_.each_piece(image.cell, bell, 0.5 * radius, [&](const Vector3& point, double volume) {
+      const double height = std::max(0.0, 1 - (point - image.point).squaredNorm() * per_square);
+      weight += volume * height * height * height;
+    });
+    if (!(weight > 0)) continue;
+    row.cells.push_back(image.cell);
+    row.weights.push_back(weight);
+    sum += weight;
+  }
+  if (!(sum > 0) || !std::isfinite(sum)) return false;
+  for (std::size_t k = first; k < row.weights.size(); ++k) row.weights[k] /= sum;
+  return true;
+}
+
+void WeightsBuilder::join_rows(const ParticleState& particles, ParticleCellWeights& weights) {
+  if (threads_ == 1) {  // nothing to join
+    std::swap(weights.row_cells, rows_[0].cells);
+    std::swap(weights.row_weights, rows_[0].weights);
+    return;
+  }
   std::size_t entries = 0;
   for (const Row& row : rows_) entries += row.cells.size();
   weights.row_cells.resize(entries);
@@ -133,8 +249,10 @@ void WeightsBuilder::refuse(const ParticleState& particles, int particle, std::i
   }
   throw NumericsError(
       "particle {} at ({}, {}, {}) m with radius {} m cannot be mapped to cells in step {}: the "
-      "radius must be positive and below the shortest period of the domain, {} m",
-      particles.id[particle], x.x(), x.y(), x.z(), radius, step, locator_.shortest_period());
+      "radius must be positive, and {} m, the reach of the map, below the shortest period of the "
+      "domain, {} m",
+      particles.id[particle], x.x(), x.y(), x.z(), radius, step, reach(radius),
+      locator_.shortest_period());
 }
 
 }  // namespace fluxpact

@@ -40,7 +40,7 @@ class ChosenByScene : public Participant {
   void keep_alive(Progress alive) override { alive_ = std::move(alive); }
 
   void configure(const Scene& scene, const Mesh& mesh) override {
-    if (scene.interphase.voidage == VoidageMap::prescribed) {
+    if (scene.interphase.voidage.map == VoidageMap::prescribed) {
       chosen_ = std::make_unique<PrescribedSolids>(backend_);
     } else {
       if (backend_ != name_of(scene.particles.backend)) {

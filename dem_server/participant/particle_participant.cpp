@@ -32,7 +32,7 @@ Identity particle_identity(const std::string& backend) {
           backend,
           {field::voidage, field::drag_coefficient, field::drag_source, field::impulse_given,
            field::particle_velocity, field::particle_volume, field::particle_count,
-           field::particle_mass, field::wall_seconds},
+           field::particle_mass, field::excess_moved, field::wall_seconds},
           {field::velocity, field::pressure_gradient}};
 }
 
@@ -47,10 +47,10 @@ void ParticleParticipant::configure(const Scene& scene, const Mesh& mesh) {
   flow_.reset();
   if (particles_flow(scene)) flow_.emplace(scene, mesh, engine_->particles());
   builder_.emplace(mesh, scene.interphase.voidage, settings_.threads);
+  excess_.emplace(mesh, scene.interphase.voidage.smallest);
   sub_steps_ = sub_steps(scene);
   first_window_ = scene.coupling.window;
   cell_volumes_ = mesh.cell_volumes;
-  cell_centres_ = mesh.cell_centres;
   const auto cells = cell_volumes_.size();
   voidage_.resize(cells);
   drag_coefficient_.resize(cells);
@@ -79,7 +79,9 @@ void ParticleParticipant::start(const Fields& in, Fields& out) {
   map_particles(0);
   candidate_.window = first_window_;
   candidate_.initial = true;
-  offer_maker_.make(settings_, fluid, voidage_, engine_->particles(), bulk_, {}, candidate_);
+  offer_maker_.make(settings_, fluid_view_.of(fluid, candidate_.weights),
+                    candidate_.weights.seen(std::span<const double>(voidage_), voidage_seen_),
+                    engine_->particles(), bulk_, {}, candidate_);
   publish(seconds_since(began), out);
   std::swap(committed_, candidate_);
 }
@@ -97,8 +99,8 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
   const FluidSeen fluid{!committed_.initial, in.vectors(field::velocity, cells),
                         in.vectors(field::pressure_gradient, cells)};
   measure_bulk(engine_->particles(), bulk_);
-  window_forces(settings_, committed_, fluid, engine_->particles(), bulk_, window.step,
-                window.length, forces_);
+  window_forces(settings_, committed_, fluid_view_.of(fluid, committed_.weights),
+                engine_->particles(), bulk_, window.step, window.length, forces_);
   velocity_before_ = engine_->particles().velocity;
 
   pending_ = true;  // from here on there is something to roll back
@@ -109,7 +111,9 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
   map_particles(window.step);
   candidate_.window = window.length;
   candidate_.initial = false;
-  offer_maker_.make(settings_, fluid, voidage_, engine_->particles(), bulk_,
+  offer_maker_.make(settings_, fluid_view_.of(fluid, candidate_.weights),
+                    candidate_.weights.seen(std::span<const double>(voidage_), voidage_seen_),
+                    engine_->particles(), bulk_,
                     {velocity_before_, window.length, &forces_,
                      flow_ ? flow_->row_before() : std::span<const int>{}},
                     candidate_);
@@ -122,10 +126,10 @@ void ParticleParticipant::map_particles(std::int64_t step) {
   const ParticleState& particles = engine_->particles();
   measure_bulk(particles, bulk_);
   builder_->build(particles, step, candidate_.weights);
-  map_voidage(candidate_.weights, bulk_.volume, cell_volumes_, cell_centres_, step,
-              settings_.threads, voidage_);
+  excess_moved_ = map_voidage(candidate_.weights, bulk_.volume, cell_volumes_, *excess_, step,
+                              settings_.threads, voidage_);
   map_velocity(candidate_.weights, bulk_.volume, particles.velocity, settings_.threads,
-               particle_velocity_);
+               cell_solids_, particle_velocity_);
 }
 
 void ParticleParticipant::publish(double wall_seconds, Fields& out) {
@@ -138,6 +142,7 @@ void ParticleParticipant::publish(double wall_seconds, Fields& out) {
   out.add_number(field::particle_volume, total(bulk_.volume));
   out.add_number(field::particle_count, engine_->particles().size());
   out.add_number(field::particle_mass, total(bulk_.mass));
+  out.add_number(field::excess_moved, excess_moved_);
   if (flow_) publish_flow(flow_->window(), out);
   out.add_number(field::wall_seconds, wall_seconds);
 }

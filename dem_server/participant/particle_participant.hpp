@@ -59,12 +59,12 @@ class ParticleParticipant : public Participant {
   EngineFactory make_engine_;
   std::unique_ptr<ParticleEngine> engine_;
   std::optional<WeightsBuilder> builder_;
+  std::optional<ExcessFinder> excess_;
   std::optional<ParticleFlow> flow_;  ///< none: nobody can come in or leave
   ExchangeSettings settings_;
   int sub_steps_ = 1;
   double first_window_ = 0;  ///< [s]
   std::vector<double> cell_volumes_;
-  std::vector<Vector3> cell_centres_;
   struct Place {
     Scene scene;
     Mesh mesh;
@@ -80,6 +80,10 @@ class ParticleParticipant : public Participant {
   ParticleBulk bulk_;
   WindowForces forces_;
   OfferMaker offer_maker_;
+  FluidView fluid_view_;
+  double excess_moved_ = 0;           ///< [m³] out of over-full cells
+  std::vector<double> cell_solids_;   ///< [m³]
+  std::vector<double> voidage_seen_;  ///< if the map goes on from cell to cell
   std::vector<Vector3> velocity_before_;
   std::vector<double> voidage_;
   std::vector<double> drag_coefficient_;

@@ -123,6 +123,7 @@ void PrescribedSolids::publish(double wall_seconds, Fields& out) {
   out.add_number(field::particle_volume, solids.value());
   out.add_number(field::particle_count, 0);  // solids without particles, and without a mass
   out.add_number(field::particle_mass, 0);
+  out.add_number(field::excess_moved, 0);
   out.add_number(field::wall_seconds, wall_seconds);
 }
 

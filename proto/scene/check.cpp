@@ -261,7 +261,7 @@ void check_interphase(const Scene& scene, Findings& findings) {
     return;
   }
   const InterphaseSettings& interphase = scene.interphase;
-  const bool prescribed = interphase.voidage == VoidageMap::prescribed;
+  const bool prescribed = interphase.voidage.map == VoidageMap::prescribed;
   if (prescribed && !interphase.prescribed) {
     findings.add("interphase.prescribed",
                  "missing; required with `voidage: prescribed`, e.g. prescribed: {voidage: "

@@ -56,7 +56,7 @@ void check_surfaces(const Scene& scene, Findings& findings) {
     findings.add("particles.surfaces",
                  "with the backend `kinematic` nothing touches a wall; remove them");
   }
-  if (scene.interphase.voidage == VoidageMap::prescribed) {
+  if (scene.interphase.voidage.map == VoidageMap::prescribed) {
     findings.add("particles.surfaces",
                  "with `interphase.voidage: prescribed` there are no particles; remove them");
   }

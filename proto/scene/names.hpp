@@ -203,7 +203,15 @@ template <>
 inline constexpr auto enum_names<VoidageMap> = std::to_array<Named<VoidageMap>>({
     {VoidageMap::exact, "exact"},
     {VoidageMap::centroid, "centroid"},
+    {VoidageMap::satellite, "satellite"},
+    {VoidageMap::kernel, "kernel"},
+    {VoidageMap::diffusion, "diffusion"},
     {VoidageMap::prescribed, "prescribed"},
+});
+template <>
+inline constexpr auto enum_names<DiffusedMap> = std::to_array<Named<DiffusedMap>>({
+    {DiffusedMap::exact, "exact"},
+    {DiffusedMap::centroid, "centroid"},
 });
 template <>
 inline constexpr auto enum_names<DragLaw> = std::to_array<Named<DragLaw>>({

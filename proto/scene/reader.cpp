@@ -130,6 +130,17 @@ void read_value(const Spot& spot, S& section) {
   if (spot.node.kind == TreeNode::Kind::refused) {
     return;
   }
+  if constexpr (requires { S::short_form; }) {
+    if (spot.node.kind == TreeNode::Kind::scalar) {  // stands for the section with this one key
+      TreeNode only = spot.node;
+      only.key = S::short_form;
+      TreeNode around;
+      around.kind = TreeNode::Kind::map;
+      around.place = spot.node.place;
+      around.children.push_back(std::move(only));
+      return read_value(Spot{around, spot.path, spot.key, spot.findings}, section);
+    }
+  }
   if (spot.node.kind != TreeNode::Kind::map) {
     return spot.refuse(fmt::format("{} where a section with keys is expected", seen(spot.node)));
   }

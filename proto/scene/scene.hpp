@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "proto/base/vector.hpp"
@@ -398,7 +399,8 @@ struct ParticleSettings {
 
 // ---- interphase ----
 
-enum class VoidageMap { exact, centroid, prescribed };
+enum class VoidageMap { exact, centroid, satellite, kernel, diffusion, prescribed };
+enum class DiffusedMap { exact, centroid };
 enum class DragLaw { none, gidaspow, ergun, wen_yu, stokes };
 enum class InterphaseForce { pressure_gradient };
 enum class PressureModel { a, b };
@@ -409,9 +411,25 @@ struct PrescribedSettings {
   double diameter = 0;  ///< [m] of the spheres that the drag law sees
 };
 
+/// How the volume of a particle, and all that it exchanges with the fluid, is shared among cells.
+/// A word alone in the scene is the map.
+struct VoidageSettings {
+  static constexpr std::string_view short_form = "map";
+
+  VoidageMap map = VoidageMap::exact;
+  int points = 32;                        ///< satellite: in a ball
+  double width = 0;                       ///< [m] kernel, diffusion: at half of the maximum
+  DiffusedMap from = DiffusedMap::exact;  ///< diffusion: what is spread
+  double smallest = 0.2;                  ///< voidage of a cell that passes on what it cannot hold
+
+  VoidageSettings() = default;
+  VoidageSettings(VoidageMap chosen)  // NOLINT(google-explicit-constructor): a map is one
+      : map(chosen) {}
+};
+
 struct InterphaseSettings {
   PressureModel model = PressureModel::a;
-  VoidageMap voidage = VoidageMap::exact;
+  VoidageSettings voidage;
   DragLaw drag = DragLaw::gidaspow;
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
   std::optional<PrescribedSettings> prescribed;

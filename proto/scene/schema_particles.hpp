@@ -235,6 +235,46 @@ void describe(Visit& visit, PrescribedSettings& prescribed) {
 }
 
 template <class Visit>
+void describe(Visit& visit, VoidageSettings& voidage) {
+  visit({.name = "map",
+         .meaning = "`exact`: overlap of sphere and cell; `centroid`: all volume to one cell, "
+                    "jumps; `satellite`: equal parts at fixed points of the sphere, small jumps; "
+                    "`kernel`: a smooth bell around the sphere; `diffusion`: spread from cell to "
+                    "cell; `prescribed`: a formula, no particles."},
+        voidage.map);
+  const bool kernel = voidage.map == VoidageMap::kernel;
+  const bool diffusion = voidage.map == VoidageMap::diffusion;
+  visit({.name = "points",
+         .range = {.lower = 1, .upper = 1000},
+         .applies = voidage.map == VoidageMap::satellite,
+         .only_with = "map: satellite",
+         .meaning = "Points in each sphere."},
+        voidage.points);
+  visit({.name = "width",
+         .dimension = Dimension::length,
+         .range = positive,
+         .required = diffusion,
+         .otherwise = "4 diameters of each sphere; required with `map: diffusion`",
+         .applies = kernel || diffusion,
+         .only_with = "map: kernel | diffusion",
+         .meaning = "Full width of the bell at half its height."},
+        voidage.width);
+  visit({.name = "from",
+         .applies = diffusion,
+         .only_with = "map: diffusion",
+         .meaning = "What is spread: the shares of `exact` or of `centroid`."},
+        voidage.from);
+  visit({.name = "smallest",
+         .range = {.lower = 0, .upper = 0.9, .without_lower = true},
+         .applies = voidage.map != VoidageMap::prescribed,
+         .only_with = "map: all but prescribed",
+         .meaning = "Smallest voidage of a cell. What a fuller cell cannot hold, and its part of "
+                    "all forces, passes to the cells around it; the audit says how much. Equal "
+                    "spheres fill a volume to 0.26 at most, the fluid solver is stable from 0.2."},
+        voidage.smallest);
+}
+
+template <class Visit>
 void describe(Visit& visit, InterphaseSettings& interphase) {
   visit({.name = "model",
          .meaning = "Where the pressure gradient acts (Gidaspow 1994): `a`: on fluid and "
@@ -242,9 +282,7 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
                     "drag over the voidage; particles feel buoyancy."},
         interphase.model);
   visit({.name = "voidage",
-         .meaning = "Map from particles to cells. `exact`: overlap of sphere and cell; `centroid`: "
-                    "all volume to one cell, "
-                    "jumps; `prescribed`: a formula, no particles."},
+         .meaning = "Map between particles and cells: a section, or its `map` alone."},
         interphase.voidage);
   visit({.name = "drag",
          .meaning = "Gidaspow 1994; Ergun 1952; Wen and Yu 1966; Stokes 1851; or none."},

@@ -111,7 +111,7 @@ class Participant:
         solids = (1 - self.voidage) * self.volumes.sum()
         self.say(
             "result",
-            {"particle_volume": solids, "particle_count": 0.0, "particle_mass": 2500 * solids, "wall_seconds": 0.0},
+            {"particle_volume": solids, "particle_count": 0.0, "particle_mass": 2500 * solids, "excess_moved": 0.0, "wall_seconds": 0.0},
             {
                 "voidage": numpy.full(cells, self.voidage),
                 "drag_coefficient": self.drag * self.volumes,

@@ -16,7 +16,7 @@ TEST(AuditColumns, are_those_that_users_rely_on) {
       "cumulative_drift,fluid_mass,particle_count,particle_mass,voidage_volume_error,epsilon_min,"
       "epsilon_max,momentum_to_fluid_x,momentum_to_fluid_y,momentum_to_fluid_z,"
       "momentum_to_particles_x,momentum_to_particles_y,momentum_to_particles_z,ledger_x,ledger_y,"
-      "ledger_z,solver_iterations,attempts,wall_cfd,wall_dem,wall_exchange\n");
+      "ledger_z,solver_iterations,attempts,wall_cfd,wall_dem,wall_exchange,excess_moved\n");
 }
 
 TEST(AuditColumns, each_show_a_member_of_their_own) {
@@ -44,6 +44,7 @@ TEST(AuditColumns, each_show_a_member_of_their_own) {
   row.wall_cfd = 27;
   row.wall_dem = 28;
   row.wall_exchange = 29;
+  row.particles.window.excess_moved = 30;
   int expected = 0;
   for (const AuditColumn& column : audit_columns()) {
     ++expected;
@@ -51,7 +52,7 @@ TEST(AuditColumns, each_show_a_member_of_their_own) {
         std::visit([&](const auto get) { return static_cast<double>(get(row)); }, column.value);
     EXPECT_EQ(value, expected) << column.name;
   }
-  EXPECT_EQ(expected, 29);
+  EXPECT_EQ(expected, 30);
 }
 
 TEST(AuditColumns, keep_wall_times_out_of_what_two_runs_must_share) {
@@ -68,7 +69,8 @@ TEST(AuditColumns, of_scalars_come_last_with_their_names) {
   scene.fluid.scalars["tracer"];
   const std::vector<ScalarName> names = scalar_names(scene);
   const std::string header = audit_csv_header(names);
-  EXPECT_THAT(header, testing::HasSubstr("wall_exchange,scalar_heat_amount,scalar_heat_in,"));
+  EXPECT_THAT(header,
+              testing::HasSubstr("wall_exchange,excess_moved,scalar_heat_amount,scalar_heat_in,"));
   EXPECT_THAT(header, testing::EndsWith("scalar_tracer_imbalance,scalar_tracer_min,"
                                         "scalar_tracer_max\n"));
   EXPECT_STREQ(column_unit(names[0], scalar_columns().front()), "J");

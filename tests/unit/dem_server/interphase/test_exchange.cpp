@@ -42,7 +42,7 @@ class Exchange : public testing::Test {
 
   void make_offer(double window, const Prediction& past = {}) {
     builder.build(particles, 1, offer.weights);
-    map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, mesh.cell_centres, 1, 1, voidage);
+    map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, excess, 1, 1, voidage);
     offer.window = window;
     maker.make(settings, fluid(), voidage, particles, bulk, past, offer);
   }
@@ -59,6 +59,7 @@ class Exchange : public testing::Test {
 
   Mesh mesh = box({1, 1, 1}, {5, 4, 6}, {Axis::x});
   WeightsBuilder builder{mesh, VoidageMap::exact, 2};
+  ExcessFinder excess{mesh, VoidageSettings().smallest};
   ParticleState particles;
   ParticleBulk bulk;
   std::vector<Vector3> velocity;

@@ -41,13 +41,16 @@ ParticleState cloud(int count, double low, double high, double radius, unsigned 
 }
 
 struct Mapped {
-  Mapped(const Mesh& mesh_, VoidageMap map, int threads = 1)
-      : mesh(mesh_), builder(mesh_, map, threads), voidage(mesh_.cell_volumes.size()) {}
+  Mapped(const Mesh& mesh_, const VoidageSettings& settings, int threads = 1)
+      : mesh(mesh_),
+        builder(mesh_, settings, threads),
+        excess(mesh_, settings.smallest),
+        voidage(mesh_.cell_volumes.size()) {}
 
   void map(const ParticleState& particles) {
     builder.build(particles, 7, weights);
     particle_volumes(particles, volumes);
-    map_voidage(weights, volumes, mesh.cell_volumes, mesh.cell_centres, 7, 1, voidage);
+    moved = map_voidage(weights, volumes, mesh.cell_volumes, excess, 7, 1, voidage);
   }
   /// (Σ (1−ε) V − Σ V_p)/Σ V_p.
   double volume_error() const {
@@ -65,6 +68,8 @@ struct Mapped {
 
   const Mesh& mesh;
   WeightsBuilder builder;
+  ExcessFinder excess;
+  double moved = 0;
   ParticleCellWeights weights;
   std::vector<double> volumes;
   std::vector<double> voidage;
@@ -254,13 +259,16 @@ TEST(Voidage, of_the_exact_map_changes_by_no_more_than_the_sphere_moves) {
   }
 }
 
-TEST(Voidage, refuses_an_over_full_cell_by_name_place_and_cure) {
-  const Mesh mesh = box({1, 1, 1}, {4, 4, 4});
+TEST(Voidage, refuses_more_than_a_closed_box_can_hold_by_name_place_and_cure) {
+  const Mesh mesh = box({1, 1, 1}, {3, 3, 3});
   ParticleState particles;
-  add_ball(particles, {0.375, 0.375, 0.375}, 0.3);  // swallows the cell (1, 1, 1) = 21
+  for (int i = 0; i < 8; ++i) {  // 0.84 of the box
+    add_ball(particles, {0.5, 0.5, 0.5}, 0.2926);
+  }
   const std::string text = refusal(mesh, particles);
-  EXPECT_NE(text.find("cell 21 at (0.375, 0.375, 0.375)"), std::string::npos) << text;
-  EXPECT_NE(text.find("larger cells"), std::string::npos) << text;
+  EXPECT_NE(text.find("cell 13 at (0.5, 0.5, 0."), std::string::npos) << text;
+  EXPECT_NE(text.find("step 7"), std::string::npos) << text;
+  EXPECT_NE(text.find("fewer particles"), std::string::npos) << text;
 }
 
 TEST(Voidage, gives_the_mean_velocity_by_volume) {
@@ -273,7 +281,9 @@ TEST(Voidage, gives_the_mean_velocity_by_volume) {
   particles.velocity[1] = {0, 6, 0};
   mapped.map(particles);
   std::vector<Vector3> mean(2);
-  map_velocity(mapped.weights, mapped.volumes, particles.velocity, 2, mean);
+  std::vector<double> solids;
+  map_velocity(mapped.weights, mapped.volumes, particles.velocity, 2, solids, mean);
+  EXPECT_NEAR(solids[0], ball_volume(0.1) + ball_volume(particles.radius[1]), 1e-16);
   EXPECT_LE((mean[0] - Vector3(1, 4, 0)).norm(), 1e-14);
   EXPECT_EQ(mean[1], Vector3(0, 0, 0));
 }

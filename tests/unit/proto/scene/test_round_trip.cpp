@@ -72,7 +72,7 @@ TEST(ReadScene, gives_every_value_of_the_text) {
   EXPECT_EQ(s.particles.insertion[1].type, InsertionType::lattice);
   EXPECT_EQ(s.particles.insertion[2].path, "bed.csv");
   EXPECT_EQ(s.particles.numerics.threads, 2);
-  EXPECT_EQ(s.interphase.voidage, VoidageMap::centroid);
+  EXPECT_EQ(s.interphase.voidage.map, VoidageMap::centroid);
   EXPECT_EQ(s.interphase.drag, DragLaw::wen_yu);
   EXPECT_TRUE(s.interphase.forces.empty());
   EXPECT_EQ(s.output.directory, "runs/elsewhere");
@@ -127,6 +127,30 @@ TEST(ReadScene, says_why_a_formula_or_a_table_is_none) {
                "s.yaml:23:90: fluid.boundaries.jet.profile[0].points[1]: 0 does not lie above 0 of "
                "the row before",
                {});
+}
+
+TEST(ReadScene, takes_a_map_alone_or_with_its_options) {
+  const auto voidage = [](const std::string& text) {
+    const Scene scene = read_scene(with("voidage: centroid", "voidage: " + text), "s.yaml");
+    return read_scene(write_scene(scene), "written").interphase.voidage;
+  };
+  EXPECT_EQ(voidage("satellite").map, VoidageMap::satellite);
+  EXPECT_EQ(voidage("satellite").points, 32);
+  EXPECT_EQ(voidage("{map: satellite, points: 50}").points, 50);
+  EXPECT_EQ(voidage("kernel").width, 0);
+  EXPECT_EQ(voidage("{map: kernel, width: 8 mm}").width, 0.008);
+  const VoidageSettings diffusion = voidage("{map: diffusion, width: 6 mm, from: centroid}");
+  EXPECT_EQ(diffusion.width, 0.006);
+  EXPECT_EQ(diffusion.from, DiffusedMap::centroid);
+  EXPECT_EQ(voidage("{smallest: 0.3}").smallest, 0.3);
+  EXPECT_EQ(voidage("{smallest: 0.3}").map, VoidageMap::exact);
+  expect_error(with("voidage: centroid", "voidage: diffusion"),
+               "s.yaml:50:12: interphase.voidage.width: missing; required with `map: kernel | ",
+               {});
+  expect_error(with("voidage: centroid", "voidage: exat"),
+               "s.yaml:50:12: interphase.voidage.map: ", {"`exat`", "nearest: `exact`"});
+  expect_error(with("voidage: centroid", "voidage: {map: exact, width: 1 mm}"),
+               "s.yaml:50:25: interphase.voidage.width: has no meaning here", {});
 }
 
 TEST(WriteScene, keeps_graded_boxes_and_meshes_of_files) {

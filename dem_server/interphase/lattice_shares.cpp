@@ -1,0 +1,137 @@
+#include "dem_server/interphase/lattice_shares.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace fluxpact {
+namespace {
+
+// Overlaps below this share of R³ are the rounding of a ball that does not touch the cell.
+constexpr double touching = 1e-14;
+
+/// The planes that cut a ball, at most one an axis.
+struct Cuts {
+  int count = 0;
+  std::array<double, 3> distance{};  ///< of the centre [m]
+  std::array<int, 3> beyond{};       ///< what to add to the cell's number
+  int walls = 0;                     ///< bits: nothing is beyond this one
+};
+
+/// Volumes beyond all planes of each set of them; a set is a number of bits.
+std::array<double, 8> beyond_sets(double radius, const Cuts& cuts) {
+  std::array<double, 8> beyond{};
+  beyond[0] = ball_volume(radius);
+  const auto& h = cuts.distance;
+  for (int i = 0; i < cuts.count; ++i) beyond[1 << i] = cut_ball_volume(radius, -h[i]);
+  if (cuts.count >= 2) beyond[3] = beyond_edge(radius, h[0], h[1]);
+  if (cuts.count == 3) {
+    beyond[5] = beyond_edge(radius, h[0], h[2]);
+    beyond[6] = beyond_edge(radius, h[1], h[2]);
+    beyond[7] = beyond_corner(radius, {h[0], h[1], h[2]});
+  }
+  return beyond;
+}
+
+}  // namespace
+
+LatticeOverlap::LatticeOverlap(const Lattice& lattice) {
+  int stride = 1;
+  for (int k = 0; k < 3; ++k) {
+    const auto& nodes = lattice.nodes[k];
+    const int intervals = static_cast<int>(nodes.size()) - 1;
+    axes_[k] = {nodes,        nodes.front(),
+                nodes.back(), intervals / (nodes.back() - nodes.front()),
+                stride,       lattice.periodic[k]};
+    stride *= intervals;
+  }
+}
+
+// -1 outside. The guess is right for equal cells; from there it is a short walk.
+int LatticeOverlap::Axis::interval(double& x) const {
+  if (!(x >= front && x < back)) {
+    if (!periodic || !std::isfinite(x)) return -1;
+    const double period = back - front;
+    x -= period * std::floor((x - front) / period);
+    if (!(x < back)) return -1;  // rounded up to the other end
+  }
+  const int last = static_cast<int>(nodes.size()) - 2;
+  int i = std::min(static_cast<int>((x - front) * per_length), last);
+  while (i < last && x >= nodes[i + 1]) ++i;
+  while (i > 0 && x < nodes[i]) --i;
+  return i;
+}
+
+int LatticeOverlap::cell_of(Vector3 point) const {
+  int cell = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = axes_[k].interval(point[k]);
+    if (i < 0) return -1;
+    cell += i * axes_[k].stride;
+  }
+  return cell;
+}
+
+bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
+  const double radius = ball.radius;
+  if (!(radius > 0)) return false;
+  Cuts cuts;
+  int cell = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Axis& axis = axes_[k];
+    double x = ball.centre[k];
+    const int i = axis.interval(x);
+    if (i < 0) return false;
+    const int last = static_cast<int>(axis.nodes.size()) - 2;
+    cell += i * axis.stride;
+    const double low = x - axis.nodes[i];
+    const double high = axis.nodes[i + 1] - x;
+    if (std::min(low, high) >= radius) continue;
+    if (std::max(low, high) < radius) return false;
+    const bool below = low < high;
+    int other = below ? i - 1 : i + 1;
+    if (other < 0 || other > last) {
+      if (!axis.periodic) {
+        cuts.walls |= 1 << cuts.count;
+        other = i;
+      } else {
+        other = below ? last : 0;
+      }
+    }
+    const double distance = below ? low : high;
+    if (axis.nodes[other + 1] - axis.nodes[other] < radius - distance) return false;
+    cuts.distance[cuts.count] = distance;
+    cuts.beyond[cuts.count] = (other - i) * axis.stride;
+    ++cuts.count;
+  }
+
+  shares.cells[0] = cell;
+  shares.count = 1;
+  if (cuts.count == 0) {
+    shares.volumes[0] = shares.total = ball_volume(radius);
+    return true;
+  }
+  const std::array<double, 8> beyond = beyond_sets(radius, cuts);
+  const int sets = 1 << cuts.count;
+  const double smallest = touching * radius * radius * radius;
+  shares.total = 0;
+  shares.count = 0;
+  for (int set = 0; set < sets; ++set) {
+    if ((set & cuts.walls) != 0) continue;
+    double volume = 0;  // beyond the planes of this set, and of no other
+    int place = cell;
+    for (int i = 0; i < cuts.count; ++i) place += (set >> i & 1) * cuts.beyond[i];
+    for (int more = 0; more < sets; ++more) {
+      if ((more & set) != set) continue;
+      volume +=
+          std::popcount(static_cast<unsigned>(more ^ set)) % 2 == 1 ? -beyond[more] : beyond[more];
+    }
+    if (volume <= smallest) continue;
+    shares.cells[shares.count] = place;
+    shares.volumes[shares.count++] = volume;
+    shares.total += volume;
+  }
+  return true;
+}
+
+}  // namespace fluxpact

@@ -40,6 +40,8 @@ class Summary {
     double lowest = INFINITY, highest = -INFINITY, largest_imbalance = 0;
   };
   std::vector<ScalarExtent> scalars_;  ///< over the run
+  double beyond_drag_ = 0;             ///< share of the particles, summed over windows
+  double most_beyond_drag_ = 0;        ///< largest share in any window
   AuditRow last_;
 };
 

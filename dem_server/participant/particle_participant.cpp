@@ -1,11 +1,15 @@
 #include "dem_server/participant/particle_participant.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "proto/base/compensated_sum.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/field_names.hpp"
+#include "proto/scene/names.hpp"
 
 namespace fluxpact {
 namespace {
@@ -129,6 +133,10 @@ void ParticleParticipant::publish(double wall_seconds, Fields& out) {
   out.add_number(field::particle_volume, total(bulk_.volume));
   out.add_number(field::particle_count, engine_->particles().size());
   out.add_number(field::particle_mass, total(bulk_.mass));
+  if (drag_range(settings_.drag.law).most_reynolds < INFINITY) {
+    out.add_number(field::particles_beyond_drag,
+                   static_cast<double>(offer_maker_.survey().outside));
+  }
   if (flow_) publish_flow(flow_->window(), out);
   out.add_number(field::wall_seconds, wall_seconds);
 }
@@ -139,6 +147,22 @@ void ParticleParticipant::commit() {
   if (flow_) flow_->commit();
   std::swap(committed_, candidate_);
   pending_ = false;
+  warn_of_drag();
+}
+
+void ParticleParticipant::warn_of_drag() {
+  constexpr double tolerated = 0.01;  // a few spheres at the edge of a range are no news
+  const int count = engine_->particles().size();
+  const double share = static_cast<double>(offer_maker_.survey().outside) / std::max(count, 1);
+  if (said_drag_ || share <= tolerated) return;
+  said_drag_ = true;
+  const DragRange range = drag_range(settings_.drag.law);
+  spdlog::warn(
+      "drag law {} is known to hold for voidage {} .. {} and Re (superficial) up to {:g}; {:.1f} % "
+      "of {} particles are beyond (said once; the closing summary has the mean and the largest "
+      "share): consider another law, see docs/theory.md",
+      name_of(settings_.drag.law), range.least_voidage, range.most_voidage, range.most_reynolds,
+      100 * share, count);
 }
 
 void ParticleParticipant::rollback() {

@@ -19,6 +19,8 @@ inline constexpr auto particle_velocity =
 inline constexpr auto particle_volume = "particle_volume";  ///< Σ V_p inside the domain [m³]
 inline constexpr auto particle_count = "particle_count";
 inline constexpr auto particle_mass = "particle_mass";  ///< [kg]
+/// Particles beyond the range of the drag law; may be missing.
+inline constexpr auto particles_beyond_drag = "particles_beyond_drag";
 
 // From the particle side if particles can come in or leave (particles_flow): of the window; none at
 // time 0. Those that leave or come in do so at its end.

@@ -7,30 +7,11 @@
 #include <array>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "proto/base/unit.hpp"
+
 namespace fluxpact {
-
-/// Powers of the SI units kg, m, s; all 0: a plain number.
-struct Unit {
-  double kg = 0;
-  double m = 0;
-  double s = 0;
-
-  Unit operator*(const Unit& other) const { return {kg + other.kg, m + other.m, s + other.s}; }
-  Unit power(double exponent) const { return {kg * exponent, m * exponent, s * exponent}; }
-  /// Equal but for round-off of fractional powers.
-  bool operator==(const Unit& other) const;
-  bool plain() const { return *this == Unit{}; }
-};
-
-/// From "1", "m/s", "Pa.s", "kg/(m3.s)": m, s, kg, N, Pa, J, W, Hz, powers as digits behind the
-/// name. Throws ConfigError with the place in the text.
-Unit parse_unit(std::string_view text);
-
-/// "kg/(m3.s)"; "1" for a plain number.
-std::string unit_text(const Unit& unit);
 
 /// A formula with + - * / ^, < <= > >= == != && ||, ?:, the functions sqrt, exp, ln, log10, tanh,
 /// atan, abs, min, max, and pi. Numbers in it are plain; what has a unit is a variable or a named

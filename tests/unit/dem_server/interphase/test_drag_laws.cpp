@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dem_server/interphase/drag.hpp"
+#include "proto/base/errors.hpp"
 
 namespace fluxpact {
 namespace {
@@ -286,6 +287,52 @@ TEST(DragLaws, say_which_coefficient_cannot_be_one) {
   const std::vector<DragPoint> fast{{1, 1e-3, 1}, {1, 1e-3, 1e4}, {1, 1e-3, 2e4}};
   EXPECT_EQ(
       drag_coefficients({.law = DragLaw::tang}, PressureModel::a, air, fast, 2, all).first_bad, 1);
+}
+
+TEST(DragLaws, of_the_user_are_those_of_each_sphere_for_any_number_of_them) {
+  InterphaseSettings interphase;
+  interphase.drag = DragLaw::expression;
+  interphase.drag_expression.coefficient =
+      "3*pi*viscosity*diameter * (1 + 0.15*reynolds^0.687) * voidage^-2.65";
+  const DragChoice own = drag_choice(interphase);
+  for (const int count : {0, 1, 63, 64, 65, 200}) {  // blocks of 64
+    std::vector<DragPoint> points;
+    for (int i = 0; i < count; ++i) points.push_back({0.4 + 0.003 * i, 1e-3, 0.05 * i});
+    std::vector<double> all(points.size());
+    for (const int threads : {1, 2}) {
+      const DragSurvey survey = drag_coefficients(own, PressureModel::a, air, points, threads, all);
+      EXPECT_EQ(survey.first_bad, -1);
+      EXPECT_EQ(survey.outside, 0);
+      for (int i = 0; i < count; ++i) {
+        const double expected = wen_yu_drag(points[i], air);
+        EXPECT_NEAR(all[i], expected, 1e-14 * expected) << i << " of " << count;
+      }
+    }
+  }
+}
+
+TEST(DragLaws, of_the_user_say_where_they_turn_negative) {
+  InterphaseSettings interphase;
+  interphase.drag = DragLaw::expression;
+  interphase.drag_expression.coefficient = "viscosity*diameter*(1 - slip/limit)";
+  interphase.drag_expression.constants["limit"].value = 100;
+  interphase.drag_expression.constants["limit"].unit = "m/s";
+  const DragChoice own = drag_choice(interphase);
+  std::vector<DragPoint> points(200, {0.5, 1e-3, 99});
+  points[130].slip = 101;
+  points[70].slip = 102;
+  std::vector<double> all(points.size());
+  for (const int threads : {1, 2}) {
+    const int bad = drag_coefficients(own, PressureModel::b, air, points, threads, all).first_bad;
+    ASSERT_EQ(bad, 70);
+    try {
+      throw_bad_drag(own.law, "particle 7", points[bad], all[bad]);
+    } catch (const NumericsError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find("drag coefficient of particle 7 is -"), std::string::npos) << text;
+      EXPECT_NE(text.find("slip 102 m/s"), std::string::npos) << text;
+    }
+  }
 }
 
 }  // namespace

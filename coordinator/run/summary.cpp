@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "proto/participant/field_names.hpp"
+#include "proto/scene/names.hpp"
 
 namespace fluxpact {
 namespace {
@@ -76,6 +77,13 @@ void Summary::add(const AuditRow& row, const CommittedState& state, double recor
     pressure_drop_.add(pressure_drop(state));
     ++pressure_windows_;
   }
+  const Fields given = fields_of(state.particles);
+  const auto beyond = given.numbers().find(field::particles_beyond_drag);
+  if (beyond != given.numbers().end() && row.particles.window.count > 0) {
+    const double share = beyond->second / static_cast<double>(row.particles.window.count);
+    beyond_drag_ += share;
+    most_beyond_drag_ = std::max(most_beyond_drag_, share);
+  }
   solver_iterations_ += row.solver_iterations;
   scalars_.resize(row.scalars.size());
   for (std::size_t i = 0; i < scalars_.size(); ++i) {
@@ -144,6 +152,13 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
         "  over-full cells       passed on up to {:.3g} m3 of particles a window, in {} of {} "
         "windows",
         largest_excess_, excess_windows_, windows_);
+  }
+  if (most_beyond_drag_ > 0) {
+    line(
+        "  drag law              {}: {:.3g} % of the particles beyond its range, at most {:.3g} % "
+        "in a window",
+        name_of(scene.interphase.drag), 100 * beyond_drag_ / static_cast<double>(windows_),
+        100 * most_beyond_drag_);
   }
   if (pressure_windows_ > 0) {
     const double drop = pressure_drop_.value() / static_cast<double>(pressure_windows_);

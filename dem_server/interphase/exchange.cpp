@@ -44,7 +44,7 @@ ExchangeSettings exchange_settings(const Scene& scene, bool mobile) {
   ExchangeSettings settings;
   settings.fluid = {scene.fluid.density, scene.fluid.viscosity};
   settings.gravity = scene.scene.gravity;
-  settings.law = scene.interphase.drag;
+  settings.drag = drag_choice(scene.interphase);
   settings.model = scene.interphase.model;
   settings.buoyancy =
       std::ranges::find(scene.interphase.forces, InterphaseForce::pressure_gradient) !=
@@ -121,8 +121,15 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
     points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
                   (u - particles.velocity[i]).norm()};
   }
-  drag_coefficients(settings.law, settings.model, settings.fluid, points_, settings.threads,
-                    offer.coefficient);
+  survey_ = drag_coefficients(settings.drag, settings.model, settings.fluid, points_,
+                              settings.threads, offer.coefficient);
+  if (const int bad = survey_.first_bad; bad >= 0) {
+    const Vector3& x = particles.position[bad];
+    throw_bad_drag(
+        settings.drag.law,
+        fmt::format("particle {} at ({}, {}, {}) m", particles.id[bad], x.x(), x.y(), x.z()),
+        points_[bad], offer.coefficient[bad]);
+  }
 #pragma omp parallel for schedule(static) num_threads(settings.threads)
   for (int i = 0; i < count; ++i) {
     const Vector3 gradient =

@@ -25,7 +25,7 @@ namespace fluxpact {
 struct ExchangeSettings {
   FluidProperties fluid;
   Vector3 gravity{0, 0, 0};  ///< [m/s²]
-  DragLaw law = DragLaw::none;
+  DragChoice drag;
   PressureModel model = PressureModel::a;
   bool pressure_gradient = true;  ///< −V_p ∇p_d acts on the particles (pressure model a)
   bool buoyancy = true;           ///< −ρ V_p g, the hydrostatic part of it (both models)
@@ -103,15 +103,20 @@ struct Prediction {
 
 /// Fills weights (already built), k and v* of an offer for a coming window of `offer.window`.
 /// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are
-/// reused.
+/// reused. Throws NumericsError naming the particle if its drag coefficient is negative or not
+/// finite.
 class OfferMaker {
  public:
   void make(const ExchangeSettings& settings, const FluidSeen& fluid,
             std::span<const double> voidage, const ParticleState& particles,
             const ParticleBulk& bulk, const Prediction& past, Offer& offer);
 
+  /// Of the newest offer.
+  const DragSurvey& survey() const { return survey_; }
+
  private:
   std::vector<DragPoint> points_;
+  DragSurvey survey_;
 };
 
 /// B = Σ w k [kg/s] and S = Σ w k v* [N], one row a cell: the force on the fluid is S − B u.

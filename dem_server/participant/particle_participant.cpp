@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "dem_server/participant/precision_error.hpp"
 #include "proto/base/compensated_sum.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/field_names.hpp"
+#include "proto/scene/names.hpp"
 
 namespace fluxpact {
 namespace {
@@ -143,6 +145,10 @@ void ParticleParticipant::publish(double wall_seconds, Fields& out) {
   out.add_number(field::particle_count, engine_->particles().size());
   out.add_number(field::particle_mass, total(bulk_.mass));
   out.add_number(field::excess_moved, excess_moved_);
+  if (drag_range(settings_.drag.law).most_reynolds < INFINITY) {
+    out.add_number(field::particles_beyond_drag,
+                   static_cast<double>(offer_maker_.survey().outside));
+  }
   if (flow_) publish_flow(flow_->window(), out);
   out.add_number(field::wall_seconds, wall_seconds);
 }
@@ -154,6 +160,22 @@ void ParticleParticipant::commit() {
   std::swap(committed_, candidate_);
   last_window_ = committed_.window;
   pending_ = false;
+  warn_of_drag();
+}
+
+void ParticleParticipant::warn_of_drag() {
+  constexpr double tolerated = 0.01;  // a few spheres at the edge of a range are no news
+  const int count = engine_->particles().size();
+  const double share = static_cast<double>(offer_maker_.survey().outside) / std::max(count, 1);
+  if (said_drag_ || share <= tolerated) return;
+  said_drag_ = true;
+  const DragRange range = drag_range(settings_.drag.law);
+  spdlog::warn(
+      "drag law {} is known to hold for voidage {} .. {} and Re (superficial) up to {:g}; {:.1f} % "
+      "of {} particles are beyond (said once; the closing summary has the mean and the largest "
+      "share): consider another law, see docs/theory.md",
+      name_of(settings_.drag.law), range.least_voidage, range.most_voidage, range.most_reynolds,
+      100 * share, count);
 }
 
 void ParticleParticipant::rollback() {

@@ -54,6 +54,7 @@ class ParticleParticipant : public Participant {
   std::vector<Vector3> last_force() const;
   void map_particles(std::int64_t step);
   void publish(double wall_seconds, Fields& out);
+  void warn_of_drag();
 
   std::string backend_;
   EngineFactory make_engine_;
@@ -74,7 +75,8 @@ class ParticleParticipant : public Participant {
 
   Offer committed_;
   Offer candidate_;
-  bool pending_ = false;  ///< a candidate waits for commit or rollback
+  bool pending_ = false;    ///< a candidate waits for commit or rollback
+  bool said_drag_ = false;  ///< that many particles are beyond the range of the drag law
 
   // Of the newest advance. Nothing here is read by the next one.
   ParticleBulk bulk_;

@@ -100,8 +100,15 @@ void PrescribedSolids::evaluate(double time, std::int64_t step, std::span<const 
     candidate_.voidage[cell] = voidage;
     points_[cell] = {voidage, diameter_, velocity[cell].norm()};
   }
-  drag_coefficients(settings_.law, settings_.model, settings_.fluid, points_, settings_.threads,
-                    candidate_.drag_coefficient);
+  const DragSurvey survey =
+      drag_coefficients(settings_.drag, settings_.model, settings_.fluid, points_,
+                        settings_.threads, candidate_.drag_coefficient);
+  if (const int bad = survey.first_bad; bad >= 0) {
+    const Vector3& x = cell_centres_[bad];
+    throw_bad_drag(settings_.drag.law,
+                   fmt::format("cell {} at ({}, {}, {}) m", bad, x.x(), x.y(), x.z()), points_[bad],
+                   candidate_.drag_coefficient[bad]);
+  }
   // From one sphere to the (1 − ε) V/V_p of them in the cell.
   const double sphere = ball_volume(diameter_ / 2);
   for (std::size_t cell = 0; cell < cell_volumes_.size(); ++cell) {

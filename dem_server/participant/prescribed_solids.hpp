@@ -25,7 +25,8 @@ class PrescribedSolids : public Participant {
 
   /// ε(x, window.end()) at the cell centres [-]; B = V β(ε, |u|) [kg/s] with the committed u; S =
   /// 0. impulse_given = Δt (B u of the fluid's last step − (1 − ε) V ∇p_d), 0 before the first.
-  /// Throws NumericsError naming cell, centre and value if ε is outside (0, 1].
+  /// Throws NumericsError naming cell, centre and value if ε is outside (0, 1] or the drag
+  /// coefficient is negative or not finite.
   void advance(const Window& window, const Fields& in, Fields& out,
                const Progress& progress) override;
   void commit() override;

@@ -21,6 +21,8 @@ inline constexpr auto particle_count = "particle_count";
 inline constexpr auto particle_mass = "particle_mass";  ///< [kg]
 inline constexpr auto excess_moved =
     "excess_moved";  ///< solids that over-full cells have passed to others [m³]
+/// Particles beyond the range of the drag law; may be missing.
+inline constexpr auto particles_beyond_drag = "particles_beyond_drag";
 
 // From the particle side if particles can come in or leave (particles_flow): of the window; none at
 // time 0. Those that leave or come in do so at its end.

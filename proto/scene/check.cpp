@@ -341,6 +341,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_contact_laws(scene, findings);
   check_insertion(scene, findings);
   check_interphase(scene, findings);
+  check_drag(scene, findings);
   check_numerics(scene, findings);
   check_launch(scene, findings);
 }

@@ -220,6 +220,14 @@ inline constexpr auto enum_names<DragLaw> = std::to_array<Named<DragLaw>>({
     {DragLaw::ergun, "ergun"},
     {DragLaw::wen_yu, "wen_yu"},
     {DragLaw::stokes, "stokes"},
+    {DragLaw::di_felice, "di_felice"},
+    {DragLaw::koch_hill, "koch_hill"},
+    {DragLaw::beetstra, "beetstra"},
+    {DragLaw::tang, "tang"},
+    {DragLaw::syamlal_obrien, "syamlal_obrien"},
+    {DragLaw::schiller_naumann, "schiller_naumann"},
+    {DragLaw::huilin_gidaspow, "huilin_gidaspow"},
+    {DragLaw::expression, "expression"},
 });
 template <>
 inline constexpr auto enum_names<InterphaseForce> = std::to_array<Named<InterphaseForce>>({

@@ -401,7 +401,21 @@ struct ParticleSettings {
 
 enum class VoidageMap { exact, centroid, satellite, kernel, diffusion, prescribed };
 enum class DiffusedMap { exact, centroid };
-enum class DragLaw { none, gidaspow, ergun, wen_yu, stokes };
+enum class DragLaw {
+  none,
+  gidaspow,
+  ergun,
+  wen_yu,
+  stokes,
+  di_felice,
+  koch_hill,
+  beetstra,
+  tang,
+  syamlal_obrien,
+  schiller_naumann,
+  huilin_gidaspow,
+  expression,
+};
 enum class InterphaseForce { pressure_gradient };
 enum class PressureModel { a, b };
 
@@ -427,10 +441,31 @@ struct VoidageSettings {
       : map(chosen) {}
 };
 
+/// The two constants of the law of Syamlal and O'Brien, tuned to a measured u_mf.
+struct SyamlalObrienSettings {
+  double dense_factor = 0.8;      ///< c of B = c ε^1.28, ε ≤ 0.85 [-]
+  double dilute_exponent = 2.65;  ///< d of B = ε^d, ε > 0.85 [-]
+};
+
+struct DragConstantSettings {
+  double value = 0;        ///< in `unit`
+  std::string unit = "1";  ///< SI, proto/base/unit_formula.hpp
+};
+
+/// A drag law of the user's own.
+struct DragExpressionSettings {
+  std::string coefficient;  ///< ζ [kg/s] of one sphere, or β [kg/(m³ s)]: by its unit
+  std::map<std::string, DragConstantSettings> constants;
+  std::array<double, 2> voidage{0.2, 1};  ///< [-] where the check tries it
+  std::array<double, 2> slip{0, 50};      ///< [m/s] where the check tries it
+};
+
 struct InterphaseSettings {
   PressureModel model = PressureModel::a;
   VoidageSettings voidage;
   DragLaw drag = DragLaw::gidaspow;
+  SyamlalObrienSettings syamlal_obrien;    ///< drag: syamlal_obrien
+  DragExpressionSettings drag_expression;  ///< drag: expression
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
   std::optional<PrescribedSettings> prescribed;
 };

@@ -275,6 +275,60 @@ void describe(Visit& visit, VoidageSettings& voidage) {
 }
 
 template <class Visit>
+void describe(Visit& visit, SyamlalObrienSettings& law) {
+  visit({.name = "dense_factor",
+         .range = positive,
+         .meaning = "c of B = c ε^1.28 up to ε = 0.85; tune it to a measured velocity of minimum "
+                    "fluidisation."},
+        law.dense_factor);
+  visit(
+      {.name = "dilute_exponent",
+       .range = positive,
+       .meaning = "d of B = ε^d above ε = 0.85; without a jump there if d = 1.28 + ln c/ln 0.85."},
+      law.dilute_exponent);
+}
+
+template <class Visit>
+void describe(Visit& visit, DragConstantSettings& constant) {
+  visit({.name = "value", .required = true, .meaning = "In `unit`."}, constant.value);
+  visit({.name = "unit",
+         .otherwise = "`1`",
+         .meaning = "SI, of m, s, kg, N, Pa, J, W: products with `.`, powers as digits, e.g. "
+                    "`Pa.s`, `kg/(m3.s)`; `1`: a plain number."},
+        constant.unit);
+}
+
+template <class Visit>
+void describe(Visit& visit, DragExpressionSettings& law) {
+  visit({.name = "coefficient",
+         .required = true,
+         .meaning = "Formula whose unit tells what it gives: kg/s, force on one sphere over slip; "
+                    "or kg/(m³ s), momentum exchange per volume of bed, β. As for model A: with "
+                    "`model: b` it is divided by the voidage. Variables: `voidage`, `diameter` "
+                    "(m), `slip` (m/s, interstitial), `density` (kg/m³) and `viscosity` (Pa s) of "
+                    "the fluid, `reynolds` (voidage·density·slip·diameter/viscosity), `volume` "
+                    "(of the sphere, m³). Numbers are dimensionless. `+ - * / ^`, comparisons, "
+                    "`?:`, sqrt, exp, ln, log10, tanh, atan, abs, min, max, pi."},
+        law.coefficient);
+  visit({.name = "constants",
+         .meaning = "Numbers of the formula that have a unit, or deserve a name."},
+        law.constants);
+  visit({.name = "voidage",
+         .range = {.lower = 0, .upper = 1, .without_lower = true},
+         .otherwise = "`[0.2, 1]`",
+         .meaning = "Where `check` tries the formula, with all diameters that the scene names: "
+                    "not finite or negative there is an error of the scene, elsewhere during the "
+                    "run one that stops it."},
+        law.voidage);
+  visit({.name = "slip",
+         .dimension = Dimension::velocity,
+         .range = not_negative,
+         .otherwise = "`[0, 50]`",
+         .meaning = "As `voidage`."},
+        law.slip);
+}
+
+template <class Visit>
 void describe(Visit& visit, InterphaseSettings& interphase) {
   visit({.name = "model",
          .meaning = "Where the pressure gradient acts (Gidaspow 1994): `a`: on fluid and "
@@ -284,9 +338,25 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
   visit({.name = "voidage",
          .meaning = "Map between particles and cells: a section, or its `map` alone."},
         interphase.voidage);
-  visit({.name = "drag",
-         .meaning = "Gidaspow 1994; Ergun 1952; Wen and Yu 1966; Stokes 1851; or none."},
-        interphase.drag);
+  visit(
+      {.name = "drag",
+       .meaning = "Of packed to dilute beds: `gidaspow` (1994), `huilin_gidaspow` (its smooth "
+                  "blend, 2003), `di_felice` (1994), `syamlal_obrien` (1987), `koch_hill` (2001), "
+                  "`beetstra` (2007), `tang` (2015). Packed: `ergun` (1952). Dilute: `wen_yu` "
+                  "(1966). Single spheres: `schiller_naumann` (1933), `stokes` (1851). "
+                  "`expression`: a formula of your own. docs/theory.md says where each holds."},
+      interphase.drag);
+  visit({.name = "syamlal_obrien",
+         .applies = interphase.drag == DragLaw::syamlal_obrien,
+         .only_with = "drag: syamlal_obrien",
+         .meaning = "Its two constants."},
+        interphase.syamlal_obrien);
+  visit({.name = "drag_expression",
+         .required = true,
+         .applies = interphase.drag == DragLaw::expression,
+         .only_with = "drag: expression",
+         .meaning = "The formula."},
+        interphase.drag_expression);
   visit({.name = "forces", .meaning = "Further forces of the fluid on the particles."},
         interphase.forces);
   visit({.name = "prescribed",

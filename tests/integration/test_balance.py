@@ -32,20 +32,52 @@ def porous_column(superficial, voidage, diameter):
     }
 
 
+def ergun(voidage, superficial, diameter, density, viscosity):
+    solids = 1 - voidage
+    return (
+        150 * solids**2 * viscosity * superficial / (voidage**3 * diameter**2)
+        + 1.75 * solids * density * superficial**2 / (voidage**3 * diameter)
+    )
+
+
+def beetstra(voidage, superficial, diameter, density, viscosity):
+    """Beetstra, van der Hoef and Kuipers 2007: force on a sphere less that of the pressure gradient, 3 π μ d U F."""
+    solids = 1 - voidage
+    reynolds = density * superficial * diameter / viscosity
+    factor = 10 * solids / voidage**2 + voidage**2 * (1 + 1.5 * math.sqrt(solids))
+    factor += (
+        0.413 * reynolds / (24 * voidage**2) * (1 / voidage + 3 * voidage * solids + 8.4 * reynolds**-0.343)
+        / (1 + 10 ** (3 * solids) * reynolds ** (-(1 + 4 * solids) / 2))
+    )
+    return 18 * viscosity * solids * superficial * factor / diameter**2 / voidage
+
+
 class UniformBed(ProgramTest):
-    def test_has_the_pressure_gradient_of_the_drag_law(self):
-        superficial, voidage, diameter, density, viscosity = 0.8, 0.42, 2e-3, 1.2, 1.8e-5
-        self.run_scene(porous_column(superficial, voidage, diameter))
-        solids = 1 - voidage
-        ergun = (
-            150 * solids**2 * viscosity * superficial / (voidage**3 * diameter**2)
-            + 1.75 * solids * density * superficial**2 / (voidage**3 * diameter)
-        )
-        fields = self.results()["fields"]
+    def check(self, expected, **interphase):
+        superficial, voidage, diameter = 0.8, 0.42, 2e-3
+        scene = porous_column(superficial, voidage, diameter)
+        scene["interphase"].update(interphase)
+        out = self.folder / "-".join(str(each) for each in interphase.values() if isinstance(each, str))
+        self.run_scene(scene, out=out)
+        fields = self.results(out)["fields"]
         pressure = fields[max(fields, key=int)]["pressure"][:].reshape(10, 4).mean(axis=1)
         gradients = numpy.diff(pressure) / 0.01
         # 1e-10: the tolerance of the pressure solver, 1e-13, times the ten cells of the column and then some.
-        self.assertLess(numpy.abs(gradients / -ergun - 1).max(), 1e-10)
+        law = expected(voidage, superficial, diameter, 1.2, 1.8e-5)
+        self.assertLess(numpy.abs(gradients / -law - 1).max(), 1e-10, interphase)
+
+    def test_has_the_pressure_gradient_of_the_drag_law_in_both_models(self):
+        for model in "ab":
+            self.check(ergun, drag="gidaspow", model=model)
+            self.check(beetstra, drag="beetstra", model=model)
+
+    def test_has_the_pressure_gradient_of_a_law_of_the_users_own(self):
+        # Ergun's equation as momentum exchange per volume of bed, its second part by named constants.
+        own = {
+            "coefficient": "150*(1-voidage)^2*viscosity/(voidage*diameter^2) + slow*k*(1-voidage)*density*slip/(fast*diameter)",
+            "constants": {"slow": {"value": 3.5, "unit": "m/s"}, "fast": {"value": 2, "unit": "m/s"}, "k": {"value": 1}},
+        }
+        self.check(ergun, drag="expression", drag_expression=own)
 
 
 class AtRest(ProgramTest):

@@ -105,12 +105,12 @@ TEST(Drag, of_all_spheres_is_that_of_each) {
                                                      {DragLaw::wen_yu, wen_yu_drag},
                                                      {DragLaw::stokes, stokes_drag}};
   for (const auto& [law, single] : laws) {
-    drag_coefficients(law, PressureModel::a, air, points, 2, all);
+    drag_coefficients({.law = law}, PressureModel::a, air, points, 2, all);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(all[i], single(points[i], air));
   }
-  drag_coefficients(DragLaw::ergun, PressureModel::b, air, points, 2, all);
+  drag_coefficients({.law = DragLaw::ergun}, PressureModel::b, air, points, 2, all);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(all[i], ergun_drag(points[i], air) / points[i].voidage);
-  drag_coefficients(DragLaw::none, PressureModel::a, air, points, 2, all);
+  drag_coefficients({.law = DragLaw::none}, PressureModel::a, air, points, 2, all);
   for (const double value : all) EXPECT_EQ(value, 0);
 }
 

@@ -34,7 +34,7 @@ class Exchange : public testing::Test {
     }
     settings.fluid = {1.2, 1.8e-5};
     settings.gravity = {0, 0, -9.81};
-    settings.law = DragLaw::gidaspow;
+    settings.drag.law = DragLaw::gidaspow;
     settings.threads = 2;
     measure_bulk(particles, bulk);
     voidage.resize(mesh.cell_volumes.size());
@@ -228,7 +228,7 @@ TEST_F(Exchange, takes_fixed_particles_as_infinitely_heavy_and_no_others) {
 
 TEST_F(Exchange, expects_contacts_to_carry_what_they_carried) {
   const double window = 0.01;
-  settings.law = DragLaw::none;
+  settings.drag.law = DragLaw::none;
   make_offer(window);
   std::ranges::fill(gradient, Vector3(0, 0, 0));
   window_forces(settings, offer, fluid(), particles, bulk, 2, window, forces);

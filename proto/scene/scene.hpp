@@ -400,7 +400,15 @@ struct ParticleSettings {
 
 enum class VoidageMap { exact, centroid, prescribed };
 enum class DragLaw { none, gidaspow, ergun, wen_yu, stokes };
-enum class InterphaseForce { pressure_gradient };
+enum class InterphaseForce {
+  pressure_gradient,
+  viscous,
+  added_mass,
+  saffman_lift,
+  magnus_lift,
+  turbulent_dispersion
+};
+enum class Crowding { none, zuber };
 enum class PressureModel { a, b };
 
 /// A solid phase given by a formula, at rest, without particles: for verification.
@@ -414,6 +422,8 @@ struct InterphaseSettings {
   VoidageMap voidage = VoidageMap::exact;
   DragLaw drag = DragLaw::gidaspow;
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
+  Crowding added_mass_crowding = Crowding::none;
+  int dispersion_seed = 1;
   std::optional<PrescribedSettings> prescribed;
 };
 
@@ -442,5 +452,8 @@ bool particles_flow(const Scene& scene);
 
 /// Whether there are particles at any time.
 bool has_particles(const Scene& scene);
+
+/// Whether interphase.forces names it.
+bool has_force(const Scene& scene, InterphaseForce force);
 
 }  // namespace fluxpact

@@ -39,7 +39,7 @@ Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const
   if (settings.buoyancy) {
     coming -= settings.fluid.density * settings.gravity / particles.density[i];
   }
-  if (!offer.other.empty()) coming += offer.other[i] / bulk.mass[i];
+  if (!offer.known.empty()) coming += offer.known[i] / bulk.mass[i];
   const int before = past.row_before.empty() ? i : past.row_before[i];
   if (!(past.length > 0) || before < 0) return {velocity + offer.window * coming, 1};
   const Vector3 load = settings.gravity + past.forces->force[before] / bulk.mass[i];
@@ -49,26 +49,16 @@ Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const
   return {velocity + offer.window * ((1 - carried) * coming - carried * drag), 1 - carried};
 }
 
-/// E of one particle; to its drag coefficient comes that of the added mass.
-Vector3 other_force(const ExchangeSettings& settings, const FluidSeen& fluid, const Offer& offer,
-                    const DragPoint& point, const ParticleState& particles,
-                    const ParticleBulk& bulk, int i, double& coefficient) {
+/// E of one particle.
+Vector3 known_force(const ExchangeSettings& settings, const FluidSeen& fluid,
+                    const ParticleCellWeights& weights, const LiftPoint& lift, double volume,
+                    double added_mass, int i) {
   Vector3 force = Vector3::Zero();
-  const ParticleCellWeights& weights = offer.weights;
-  const Vector3 slip = weights.gather(i, fluid.velocity, no_vector) - particles.velocity[i];
-  if (settings.viscous) force += bulk.volume[i] * weights.gather(i, fluid.viscous_force, no_vector);
-  if (settings.saffman_lift || settings.magnus_lift) {
-    const Vector3 vorticity = weights.gather(i, fluid.vorticity, no_vector);
-    const LiftPoint lift{point.diameter, slip, vorticity, particles.spin[i]};
-    if (settings.saffman_lift) force += saffman_lift(lift, settings.fluid);
-    if (settings.magnus_lift) force += magnus_lift(lift, settings.fluid);
-  }
+  if (settings.viscous) force += volume * weights.gather(i, fluid.viscous_force, no_vector);
+  if (settings.saffman_lift) force += saffman_lift(lift, settings.fluid);
+  if (settings.magnus_lift) force += magnus_lift(lift, settings.fluid);
   if (settings.added_mass) {
-    const double mass = added_mass_coefficient(settings.crowding, point.voidage) *
-                        settings.fluid.density * bulk.volume[i];
-    force += mass * weights.gather(i, fluid.convective_acceleration, no_vector);
-    force -= mass / offer.window * slip;
-    coefficient += mass / offer.window;
+    force += added_mass * weights.gather(i, fluid.convective_acceleration, no_vector);
   }
   return force;
 }
@@ -157,7 +147,7 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
   for (int i = 0; i < count; ++i) {
     Vector3 drag = Vector3::Zero();
     Vector3 pressure = Vector3::Zero();
-    Vector3 other = Vector3::Zero();
+    Vector3 known = Vector3::Zero();
     if (fluid.solved) {
       const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
       drag = offer.window * offer.coefficient[i] * (u - offer.velocity[i]);
@@ -166,14 +156,14 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
         pressure = -bulk.volume[i] * gradient;
         if (!offer.returned.empty()) drag += offer.window * offer.returned[i] * gradient;
       }
-      if (!offer.other.empty()) other = offer.window * offer.other[i];
+      if (!offer.known.empty()) known = offer.window * offer.known[i];
     }
     forces.drag_impulse[i] = drag;
     forces.impulse[i] = drag + length * pressure;
     forces.force[i] = drag / length + pressure;
-    if (!offer.other.empty()) {
-      forces.impulse[i] += other;
-      forces.force[i] += other / length;
+    if (!offer.known.empty()) {
+      forces.impulse[i] += known;
+      forces.force[i] += known / length;
     }
     if (settings.buoyancy) {
       forces.force[i] -= settings.fluid.density * bulk.volume[i] * settings.gravity;
@@ -206,8 +196,9 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
   }
   drag_coefficients(settings.law, settings.model, settings.fluid, points_, settings.threads,
                     offer.coefficient);
-  offer.other.clear();
+  offer.known.clear();
   offer.eddies.clear();
+  lead_.clear();
   if (!offer.initial) add_further_forces(settings, fluid, particles, bulk, past, offer);
   if (settings.pressure_returns) offer.returned.assign(size, 0.0);
 #pragma omp parallel for schedule(static) num_threads(settings.threads)
@@ -223,7 +214,7 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
     if (settings.pressure_returns && !offer.initial) {
       offer.returned[i] = offer.coefficient[i] * coming.free * offer.window / particles.density[i];
     }
-    if (!offer.eddies.empty()) offer.velocity[i] -= fluctuation_[i];
+    if (!lead_.empty()) offer.velocity[i] -= lead_[i];
   }
 }
 
@@ -231,18 +222,34 @@ void OfferMaker::add_further_forces(const ExchangeSettings& settings, const Flui
                                     const ParticleState& particles, const ParticleBulk& bulk,
                                     const Prediction& past, Offer& offer) {
   const int count = particles.size();
+  const auto size = points_.size();
+  if (settings.added_mass || settings.turbulent_dispersion) lead_.assign(size, Vector3::Zero());
   if (settings.turbulent_dispersion) {
-    fluctuation_.resize(points_.size());
-    meet_eddies(settings, fluid, particles, bulk, past, points_, fluctuation_, offer);
+    meet_eddies(settings, fluid, particles, bulk, past, points_, lead_, offer);
     drag_coefficients(settings.law, settings.model, settings.fluid, points_, settings.threads,
                       offer.coefficient);
   }
-  if (!settings.has_other()) return;
-  offer.other.resize(points_.size());
+  if (!settings.has_known()) return;
+  const bool lifts = settings.saffman_lift || settings.magnus_lift;
+  offer.known.resize(size);
 #pragma omp parallel for schedule(static) num_threads(settings.threads)
   for (int i = 0; i < count; ++i) {
-    offer.other[i] =
-        other_force(settings, fluid, offer, points_[i], particles, bulk, i, offer.coefficient[i]);
+    LiftPoint lift;
+    lift.diameter = points_[i].diameter;
+    lift.slip = offer.weights.gather(i, fluid.velocity, no_vector) - particles.velocity[i];
+    if (lifts) {
+      lift.vorticity = offer.weights.gather(i, fluid.vorticity, no_vector);
+      lift.spin = particles.spin[i];
+    }
+    double added = 0;
+    if (settings.added_mass) {
+      added = added_mass_coefficient(settings.crowding, points_[i].voidage) *
+              settings.fluid.density * bulk.volume[i];
+      const double whole = offer.coefficient[i] + added / offer.window;
+      lead_[i] = (offer.coefficient[i] * lead_[i] - added / offer.window * lift.slip) / whole;
+      offer.coefficient[i] = whole;
+    }
+    offer.known[i] = known_force(settings, fluid, offer.weights, lift, bulk.volume[i], added, i);
   }
 }
 
@@ -260,10 +267,10 @@ void deposit_offer(const Offer& offer, int threads, std::span<double> drag_coeff
         [&](int particle) -> Vector3 {
           return offer.coefficient[particle] * offer.velocity[particle];
         });
-    if (!offer.other.empty()) {
+    if (!offer.known.empty()) {
       offer.weights.deposit(
           cell, [&](const Vector3& share) { source -= share; },
-          [&](int particle) -> const Vector3& { return offer.other[particle]; });
+          [&](int particle) -> const Vector3& { return offer.known[particle]; });
     }
     drag_coefficient[cell] = coefficient;
     drag_source[cell] = source;

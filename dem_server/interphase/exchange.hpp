@@ -11,13 +11,16 @@
 // (1980) 139-167.
 //
 // Other forces, if the scene asks for them, enter the same law: impulse(u) = Δt [k (u − v*) + E].
-// Viscous force and lift are part of E, known from the fluid's last state; v* has them, too.
+// Viscous force and lift are E, known from the fluid's last state; v* has their effect, too.
 //
 // Added mass M = C_m ρ V_p: M (Du/Dt − dv/dt) over the window from (u0, v0) to (u1, v1) is
-//   M [(u1 − u0)/Δt + (u0·∇)u0 − (v1 − v0)/Δt] = M/Δt (u1 − v1) + M (u0·∇)u0 − M/Δt (u0 − v0),
-// a drag with the coefficient M/Δt and two known forces. So ζ + M/Δt stands in the place of ζ, the
-// rest in E, and no density ratio is too small: without walls and other forces the slip becomes
-// s1 = s0 (1 + R M)/(1 + R (M + ζ Δt)), R = 1/m + 1/m_fluid, between 0 and s0 for any Δt.
+//   M [(u1 − u0)/Δt + (u0·∇)u0 − (v1 − v0)/Δt] = M/Δt (u1 − v1) − M/Δt (u0 − v0) + M (u0·∇)u0.
+// The first part is a drag: Z = ζ + M/Δt stands in the place of ζ. The last is in E. The second
+// belongs to the drag whatever contacts do, and so does ζ u' of an eddy: together a lead
+//   l = [ζ u' − M/Δt (u0 − v0)]/Z,   impulse(u) = Δt k (u − (v* − l)),   k = Z/(1 + Z Δt/m),
+// which is Z (u1 − v1 + l) for the velocity v1 to which it leads. No density ratio is too small:
+// without other forces the slip becomes s1 = s0 (1 + R M)/(1 + R (M + ζ Δt)), R = 1/m + 1/m_fluid,
+// between 0 and s0 for any Δt.
 //
 // With it the pressure gradient is eliminated, too (model a), because a liquid and its particles
 // accelerate each other through it: v* = v*_0 − a ∇p, a = (1 − s) Δt/ρ_p (s: see Prediction), and
@@ -60,7 +63,7 @@ struct ExchangeSettings {
   int threads = 1;
 
   /// Whether an offer has forces E beside the drag.
-  bool has_other() const { return viscous || added_mass || saffman_lift || magnus_lift; }
+  bool has_known() const { return viscous || added_mass || saffman_lift || magnus_lift; }
 };
 
 /// From the scene; `mobile` from the engine. threads = 0 in the scene: all cores.
@@ -89,16 +92,16 @@ struct Offer {
   bool initial = true;  ///< made at time 0: the fluid never steps with it, so it has drag only
   ParticleCellWeights weights;
   std::vector<double> coefficient;  ///< k [kg/s], one a particle
-  std::vector<Vector3> velocity;    ///< v* [m/s], one a particle; less u' of its eddy
+  std::vector<Vector3> velocity;    ///< v* − l [m/s], one a particle
   // Empty unless the settings ask for it; one a particle.
-  std::vector<Vector3> other;    ///< E [N]
+  std::vector<Vector3> known;    ///< E [N]
   std::vector<double> returned;  ///< k a [m³]: what drag hands back of the pressure gradient
   std::vector<Eddy> eddies;      ///< at the end of the coming window
 };
 
 /// What acts on the particles over one window, one row a particle; all constant over the window.
 struct WindowForces {
-  std::vector<Vector3> drag_impulse;  ///< J = Δt k (Σ w u − v*) [N s]
+  std::vector<Vector3> drag_impulse;  ///< J = Δt k (Σ w u − v*) [N s], with all that is above
   std::vector<Vector3>
       impulse;  ///< J + Δt (E − V_p Σ w ∇p_d) [N s]: what the fluid gives and feels
   std::vector<Vector3> force;  ///< [N] impulse/Δt, and the buoyancy −ρ V_p g: for the engine
@@ -150,7 +153,7 @@ class OfferMaker {
                           const Prediction& past, Offer& offer);
 
   std::vector<DragPoint> points_;
-  std::vector<Vector3> fluctuation_;  ///< mean u' of the coming window; with dispersion only
+  std::vector<Vector3> lead_;  ///< l [m/s]; empty without added mass and dispersion
 };
 
 /// B = Σ w k [kg/s] and S = Σ w (k v* − E) [N], one row a cell: the force on the fluid is S − B u,

@@ -278,10 +278,6 @@ void check_forces(const Scene& scene, Findings& findings) {
   if (!findings.sound(path)) return;
   const InterphaseSettings& interphase = scene.interphase;
   for (const InterphaseForce force : interphase.forces) {
-    if (std::ranges::count(interphase.forces, force) > 1) {
-      findings.add(path, fmt::format("`{}` stands here twice; keep one", name_of(force)));
-      return;
-    }
     if (interphase.voidage == VoidageMap::prescribed &&
         force != InterphaseForce::pressure_gradient && findings.sound("interphase.voidage")) {
       findings.add(path, fmt::format("`{}` acts on particles, and with `voidage: prescribed` there "

@@ -251,7 +251,7 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
          .meaning = "Gidaspow 1994; Ergun 1952; Wen and Yu 1966; Stokes 1851; or none."},
         interphase.drag);
   visit({.name = "forces",
-         .meaning = "Further forces of the fluid on the particles (docs/theory.md, section 2): "
+         .meaning = "Further forces of the fluid on the particles (docs/theory.md, section 3): "
                     "`pressure_gradient`, buoyancy included; `viscous`: the divergence of the "
                     "fluid's viscous stress (model a); `added_mass`, of liquids; `saffman_lift` in "
                     "shear; `magnus_lift` of spinning spheres; `turbulent_dispersion` by the "

@@ -11,7 +11,9 @@
 // (1980) 139-167.
 //
 // Other forces, if the scene asks for them, enter the same law: impulse(u) = Δt [k (u − v*) + E].
-// Viscous force and lift are E, known from the fluid's last state; v* has their effect, too.
+// Viscous force and lift are E, known from the fluid's last state; v* has their effect, too. The
+// viscous force takes (1 − ε) of the fluid's own, a window late: stable, since the fluid keeps the
+// whole of it implicit.
 //
 // Added mass M = C_m ρ V_p: M (Du/Dt − dv/dt) over the window from (u0, v0) to (u1, v1) is
 //   M [(u1 − u0)/Δt + (u0·∇)u0 − (v1 − v0)/Δt] = M/Δt (u1 − v1) − M/Δt (u0 − v0) + M (u0·∇)u0.

@@ -36,6 +36,7 @@ class Turbulence {
   std::span<const double> eddy_viscosity() const { return eddy_; }
   /// k and ε; empty with other models.
   const TurbulentLevel& committed() const { return committed_; }
+  const TurbulentLevel& candidate() const { return candidate_; }
 
  private:
   void find_gradient(std::span<const Vector3> velocity, const BoundaryValues& boundary);

@@ -5,10 +5,29 @@
 namespace fluxpact {
 namespace {
 
-void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
-                    const FluidProperties& fluid, std::span<const double> flux,
-                    std::span<const double> voidage, const ViscosityFields& viscosity,
-                    TransportCoefficients& faces) {
+/// Weight of what lies across a side of a cell [kg/s].
+double weight_of_side(const Stencil& s, const TransportCoefficients& faces, int side) {
+  const int f = s.side_face[side];
+  return s.side_sign[side] > 0 ? faces.into_owner[f] : faces.into_neighbour[f];
+}
+
+}  // namespace
+
+void resize(MomentumCoefficients& c, const Stencil& s) {
+  const auto cells = static_cast<std::size_t>(s.cells);
+  const auto faces = static_cast<std::size_t>(s.faces);
+  for (auto* values : {&c.inertia, &c.transport}) values->assign(cells, 0.0);
+  c.known.assign(cells, Vector3::Zero());
+  for (auto* values :
+       {&c.faces.mass_flux, &c.faces.diffusion, &c.faces.into_owner, &c.faces.into_neighbour}) {
+    values->assign(faces, 0.0);
+  }
+}
+
+void transport_coefficients(const Stencil& s, const BoundaryConditions& conditions,
+                            const FluidProperties& fluid, std::span<const double> flux,
+                            std::span<const double> voidage, const ViscosityFields& viscosity,
+                            TransportCoefficients& faces) {
   const auto stress = [&](int cell) {
     return (viscosity.of_cells.empty() ? fluid.viscosity : viscosity.of_cells[cell]) *
            voidage[cell];
@@ -42,31 +61,12 @@ void assemble_faces(const Stencil& s, const BoundaryConditions& conditions,
   }
 }
 
-/// Weight of what lies across a side of a cell [kg/s].
-double weight_of_side(const Stencil& s, const TransportCoefficients& faces, int side) {
-  const int f = s.side_face[side];
-  return s.side_sign[side] > 0 ? faces.into_owner[f] : faces.into_neighbour[f];
-}
-
-}  // namespace
-
-void resize(MomentumCoefficients& c, const Stencil& s) {
-  const auto cells = static_cast<std::size_t>(s.cells);
-  const auto faces = static_cast<std::size_t>(s.faces);
-  for (auto* values : {&c.inertia, &c.transport}) values->assign(cells, 0.0);
-  c.known.assign(cells, Vector3::Zero());
-  for (auto* values :
-       {&c.faces.mass_flux, &c.faces.diffusion, &c.faces.into_owner, &c.faces.into_neighbour}) {
-    values->assign(faces, 0.0);
-  }
-}
-
 void assemble_momentum(const Stencil& s, const BoundaryConditions& conditions,
                        const FluidProperties& fluid, const FluidState& old_state,
                        const SolidsInput& solids, const TimeCoefficients& time,
                        std::span<const double> convecting, const ViscosityFields& viscosity,
                        MomentumCoefficients& c) {
-  assemble_faces(s, conditions, fluid, convecting, solids.voidage, viscosity, c.faces);
+  transport_coefficients(s, conditions, fluid, convecting, solids.voidage, viscosity, c.faces);
   c.drag = solids.drag_coefficient;
   c.source = solids.drag_source;
 #pragma omp parallel for schedule(static) num_threads(s.threads)

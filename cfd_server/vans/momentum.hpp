@@ -1,7 +1,8 @@
 // The momentum balance of the fluid in each cell over one window, and its implicit predictor.
 //
 // For u = u^{n+1}, with χ = ε where fluid and particles share the pressure gradient (model A) and
-// χ = 1 where the fluid bears it alone (model B; Gidaspow, Multiphase Flow and Fluidization, 1994):
+// χ = 1 where the fluid bears it alone (model B; Gidaspow, Multiphase Flow and Fluidization, 1994);
+// where particles answer the gradient within the window, with what they return of it:
 //     (A_t + A_b) u_P − C_P(u) + χ V ∇p = B_t + S
 // A_t = ρ V ε^n/Δt is the inertia, B_t = A_t u^n (Euler; see time_scheme.hpp), A_b the drag
 // coefficient, S the drag source, C_P the net force of convection and of the viscous stress
@@ -45,6 +46,13 @@ struct MomentumCoefficients {
 };
 
 void resize(MomentumCoefficients& coefficients, const Stencil& stencil);
+
+/// Convection by the flux Φ [kg/s] and the viscous stress of ε μ, one entry a face. voidage one a
+/// cell.
+void transport_coefficients(const Stencil& stencil, const BoundaryConditions& conditions,
+                            const FluidProperties& fluid, std::span<const double> flux,
+                            std::span<const double> voidage, const ViscosityFields& viscosity,
+                            TransportCoefficients& faces);
 
 /// Fill the coefficients from the last state and the solids at the step's end, whose drag they go
 /// on to read. convecting: Φ [kg/s], one a face.

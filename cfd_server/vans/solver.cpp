@@ -7,10 +7,12 @@
 
 #include "cfd_server/scalars/fluid_scalars.hpp"
 #include "cfd_server/turbulence/turbulence.hpp"
+#include "cfd_server/vans/flow_fields.hpp"
 #include "cfd_server/vans/inner_steps.hpp"
 #include "cfd_server/vans/window_check.hpp"
 #include "cfd_server/vans/window_solver.hpp"
 #include "proto/base/errors.hpp"
+#include "proto/participant/asked_fields.hpp"
 
 namespace fluxpact {
 namespace {
@@ -78,6 +80,7 @@ struct VansSolver::Impl {
     if (scene.fluid.turbulence.model != TurbulenceModel::none) {
       turbulence = std::make_unique<Turbulence>(scene, mesh, problem.stencil, problem.conditions);
     }
+    if (!asked_of_fluid(scene).empty()) flow_fields = std::make_unique<FlowFields>(scene, problem);
   }
 
   void warn_once();
@@ -96,6 +99,7 @@ struct VansSolver::Impl {
   WindowMeans means;                       ///< of the window in hand; sized with it
   std::unique_ptr<FluidScalars> scalars;   ///< nothing if the scene has none
   std::unique_ptr<Turbulence> turbulence;  ///< nothing without a model
+  std::unique_ptr<FlowFields> flow_fields;  ///< nothing if no force asks for them
   FluidState committed;
   FluidState candidate;
   FluidReport report;
@@ -258,6 +262,9 @@ void VansSolver::start(std::span<const double> voidage) {
   state.means = {};
   if (self.scalars) self.scalars->start();
   if (self.turbulence) self.turbulence->start();
+  if (self.flow_fields) {
+    self.flow_fields->update(state.velocity, state.voidage, self.fields->boundary);
+  }
   self.has_candidate = false;
   self.fields->pressure_solver->forget();
 }
@@ -292,7 +299,7 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
       interpolate_voidage(self.committed.voidage, solids.voidage, number, count, self.voidage);
     }
     const SolidsInput at_end{last ? solids.voidage : std::span<const double>(self.voidage),
-                             solids.drag_coefficient, solids.drag_source};
+                             solids.drag_coefficient, solids.drag_source, solids.pressure_return};
     FluidState& to = from == &self.candidate ? self.between : self.candidate;
     try {
       const Window step = inner_window(window, number, count);
@@ -309,6 +316,10 @@ void VansSolver::advance(const Window& window, const SolidsInput& solids,
   if (count > 1) std::swap(self.means, self.candidate.means);
   self.finish_window(window, count);
   if (self.scalars) self.scalars->close_window(window.length);
+  if (self.flow_fields) {
+    self.flow_fields->update(window_velocity(self.candidate), self.candidate.voidage,
+                             self.fields->boundary);
+  }
   self.has_candidate = true;
   self.warn_once();
 }
@@ -346,5 +357,6 @@ const FluidState& VansSolver::candidate() const { return impl_->candidate; }
 const FluidReport& VansSolver::report() const { return impl_->report; }
 const FluidScalars* VansSolver::scalars() const { return impl_->scalars.get(); }
 const Turbulence* VansSolver::turbulence() const { return impl_->turbulence.get(); }
+const FlowFields* VansSolver::flow_fields() const { return impl_->flow_fields.get(); }
 
 }  // namespace fluxpact

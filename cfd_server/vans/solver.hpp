@@ -16,8 +16,10 @@ namespace fluxpact {
 struct SolidsInput {
   std::span<const double> voidage;  ///< ε^{n+1} [-]
   std::span<const double>
-      drag_coefficient;  ///< B [kg/s]: force on the fluid in a cell is S − B u^{n+1}
+      drag_coefficient;  ///< B [kg/s]: force on the fluid in a cell is S − B u^{n+1} − A ∇p
   std::span<const Vector3> drag_source;  ///< S [N]
+  std::span<const double>
+      pressure_return{};  ///< A [m³], see field::pressure_return; empty: there is none
 };
 
 /// What a second-order step needs of the level before the last one.
@@ -67,6 +69,7 @@ struct FluidReport {
   PhaseSeconds seconds;
 };
 
+class FlowFields;
 class FluidScalars;
 class Turbulence;
 
@@ -95,6 +98,8 @@ class VansSolver {
   /// Nothing if the scene has none.
   const FluidScalars* scalars() const;
   const Turbulence* turbulence() const;
+  /// Of the candidate, or after `start` of the committed state; nothing if no force asks for them.
+  const FlowFields* flow_fields() const;
 
  private:
   struct Impl;

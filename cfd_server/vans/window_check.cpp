@@ -53,6 +53,16 @@ void check_window(const Stencil& s, const Window& window, const SolidsInput& sol
   check_voidage(s, solids.voidage, window.step);
   check_size(s, "drag_coefficient", solids.drag_coefficient.size(), window.step);
   check_size(s, "drag_source", solids.drag_source.size(), window.step);
+  if (!solids.pressure_return.empty()) {
+    check_size(s, "pressure_return", solids.pressure_return.size(), window.step);
+    const int wrong = first_bad(s.cells, s.threads, [&](int at) {
+      return !(solids.pressure_return[at] >= 0) || !std::isfinite(solids.pressure_return[at]);
+    });
+    if (wrong >= 0) {
+      refuse(s, "pressure_return", wrong, solids.pressure_return[wrong], window.step,
+             "it must be finite and not negative");
+    }
+  }
   const auto drag_is_bad = [&](int cell) {
     const double drag = solids.drag_coefficient[cell];
     return !(drag >= 0) || !std::isfinite(drag);

@@ -24,7 +24,19 @@ std::vector<SlipFace> slip_faces(const Stencil& s, const BoundaryConditions& con
 
 /// χ: the part of a cell's volume on which the fluid bears the pressure gradient.
 std::span<const double> pressure_share(const Step& step, const WindowFields& w) {
-  return step.problem.model == PressureModel::a ? step.solids.voidage : std::span(w.ones);
+  const bool own = step.problem.model == PressureModel::a && step.solids.pressure_return.empty();
+  return own ? step.solids.voidage : std::span(w.share);
+}
+
+/// To the fluid's own share comes what the particles, pressed on, hand back by their drag.
+void add_returned_pressure(const Step& step, WindowFields& w) {
+  const Stencil& s = step.problem.stencil;
+  w.share.resize(s.volume.size());
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int cell = 0; cell < s.cells; ++cell) {
+    const double own = step.problem.model == PressureModel::a ? step.solids.voidage[cell] : 1.0;
+    w.share[cell] = own + step.solids.pressure_return[cell] / s.volume[cell];
+  }
 }
 
 /// C(u), ε u and the gradients of the velocity in hand.
@@ -218,7 +230,7 @@ WindowFields::WindowFields(const FluidProblem& problem)
   }
   if (problem.numerics.time == TimeScheme::bdf2 || problem.numerics.outer_iterations > 1)
     convecting.assign(face_count, 0.0);
-  if (problem.model == PressureModel::b) ones.assign(cell_count, 1.0);
+  if (problem.model == PressureModel::b) share.assign(cell_count, 1.0);
   if (!s.orthogonal) {
     pressure_slope.assign(cell_count, Vector3::Zero());
     slope_coefficients.assign(s.side_face.size(), Vector3::Zero());
@@ -238,6 +250,7 @@ void open_step(const Step& step, const TimeCoefficients& time, WindowFields& w,
   const Stencil& s = problem.stencil;
   const double density = problem.fluid.density;
   w.time = time;
+  if (!step.solids.pressure_return.empty()) add_returned_pressure(step, w);
   update_boundary_values(s, problem.conditions, voidage, step.window.end(), w.boundary);
 #pragma omp parallel for schedule(static) num_threads(s.threads)
   for (int cell = 0; cell < s.cells; ++cell) {

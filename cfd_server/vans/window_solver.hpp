@@ -47,11 +47,12 @@ struct WindowFields {
   MomentumSolver predictor;
   std::unique_ptr<PressureSolver> pressure_solver;
 
-  std::vector<double> storage;      ///< ρ V dε/dt [kg/s]
-  std::vector<double> source;       ///< right-hand side of continuity [m³/s]
-  std::vector<double> convecting;   ///< Φ [kg/s] at the step's end; bdf2 or outer iterations only
-  std::vector<double> ones;         ///< χ of pressure model b; empty with model a
-  std::vector<double> flux;         ///< φ of the last corrector [m³/s], one a face
+  std::vector<double> storage;     ///< ρ V dε/dt [kg/s]
+  std::vector<double> source;      ///< right-hand side of continuity [m³/s]
+  std::vector<double> convecting;  ///< Φ [kg/s] at the step's end; bdf2 or outer iterations only
+  std::vector<double> share;  ///< χ where it is not ε: 1 with pressure model b, ε + A/V where
+                              ///< particles return pressure (sized by the first who do)
+  std::vector<double> flux;   ///< φ of the last corrector [m³/s], one a face
   std::vector<double> flux_before;  ///< φ from which a corrector started [m³/s], one a face
   std::vector<double> pressure;     ///< p − level [Pa]
   std::vector<double> rhs;

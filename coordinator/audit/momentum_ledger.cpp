@@ -24,7 +24,11 @@ HandedOver hand_over(const Mesh& mesh, const MomentumWindow& window) {
   for (std::size_t c = 0; c < mesh.cell_volumes.size(); ++c) {
     const double volume = mesh.cell_volumes[c];
     const Vector3 drag = window.drag_coefficient[c] * window.velocity[c];
-    const Vector3 expected = window.length * (window.drag_source[c] - drag);
+    Vector3 returned = Vector3::Zero();
+    if (!window.pressure_return.empty()) {
+      returned = window.pressure_return[c] * window.pressure_gradient[c];
+    }
+    const Vector3 expected = window.length * (window.drag_source[c] - drag - returned);
     const double difference = (window.impulse_taken[c] - expected).norm();
     sum.difference.add(difference);
     if (!std::isnan(sum.worst) && !(difference <= sum.worst)) {
@@ -38,7 +42,8 @@ HandedOver hand_over(const Mesh& mesh, const MomentumWindow& window) {
       sum.scale.add(window.length * audit_floor * volume * window.pressure_gradient[c].norm());
     }
     sum.impulse.add(handed);
-    sum.scale.add(handed.norm() + window.length * (window.drag_source[c].norm() + drag.norm()));
+    sum.scale.add(handed.norm() +
+                  window.length * (window.drag_source[c].norm() + drag.norm() + returned.norm()));
   }
   return sum;
 }

@@ -1,10 +1,10 @@
 // The momentum audit of one window: what the fluid gave away and what the particles were given.
 //
 // The fluid step of window n hands over, cell by cell, the impulse
-//     H_c = −J_c − Δt (1−ε_c) V_c ∇p_c,        J_c = Δt (S_c − B_c u_c)
-// (J: what drag gave the fluid; the second part only if the pressure-gradient force is on). The
-// particles are given it in window n+1, as a constant force; in between it is in flight, and the
-// ledger holds it.
+//     H_c = −J_c − Δt (1−ε_c) V_c ∇p_c,        J_c = Δt (S_c − B_c u_c − A_c ∇p_c)
+// (J: what drag and the other forces of the particles gave the fluid, A only where the scene asks
+// for it; the second part of H only if the pressure-gradient force is on). The particles are given
+// it in window n+1, as a constant force; in between it is in flight, and the ledger holds it.
 //
 // What must match is the SUM over the cells, not each cell: u and ∇p are gathered at a particle
 // from all the cells that it touches and the impulse is scattered back with the same weights, which
@@ -31,6 +31,7 @@ struct MomentumWindow {
   std::span<const double> voidage;             ///< ε^{n+1} [-]
   std::span<const double> drag_coefficient;    ///< B [kg/s]
   std::span<const Vector3> drag_source;        ///< S [N]
+  std::span<const double> pressure_return;     ///< A [m³]; empty: none
   std::span<const Vector3> velocity;           ///< u^{n+1} [m/s]
   std::span<const Vector3> pressure_gradient;  ///< ∇p_d [Pa/m]
   std::span<const Vector3> impulse_taken;      ///< J as the fluid says [N s]
@@ -55,7 +56,7 @@ struct MomentumAudit {
   Vector3 momentum_to_fluid{0, 0, 0};      ///< −Σ_c H of this window [N s]
   Vector3 momentum_to_particles{0, 0, 0};  ///< Σ_c impulse_given of this window [N s]
   Vector3 ledger{0, 0, 0};                 ///< in flight after this window [N s]
-  /// Σ_c |J_c as sent − Δt (S_c − B_c u_c)| / scale of this window [-].
+  /// Σ_c |J_c as sent − Δt (S_c − B_c u_c − A_c ∇p_c)| / scale of this window [-].
   double impulse_error = 0;
   int impulse_error_cell = -1;  ///< where the difference is largest; -1: nowhere
   /// |Σ_c given now − Σ_c H of the last window| / its scale [-].
@@ -65,9 +66,9 @@ struct MomentumAudit {
 
 /// A pure function of the window and of the committed total, so a window can be repeated.
 ///
-/// The scale of a window is Σ_c |H_c| + Δt (|S_c| + |B_c u_c| + audit_floor V_c |∇p_c|): the sizes
-/// of the terms whose sum is compared, the last one because 1−ε is known to 1.1e-16 only. 0/0
-/// counts as 0.
+/// The scale of a window is Σ_c |H_c| + Δt (|S_c| + |B_c u_c| + |A_c ∇p_c| + audit_floor V_c
+/// |∇p_c|): the sizes of the terms whose sum is compared, the last one because 1−ε is known
+/// to 1.1e-16 only. 0/0 counts as 0.
 MomentumAudit audit_momentum(const Mesh& mesh, const MomentumWindow& window,
                              const MomentumTotal& committed);
 

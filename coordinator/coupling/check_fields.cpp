@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "proto/base/errors.hpp"
+#include "proto/participant/asked_fields.hpp"
 #include "proto/participant/field_names.hpp"
 
 namespace fluxpact {
@@ -26,6 +27,11 @@ void require_finite(const Fields& fields, std::string_view sender, std::int64_t 
   }
 }
 
+void require_asked(const Fields& fields, const AskedFields& asked, const Mesh& mesh) {
+  for (const std::string& name : asked.scalars) fields.scalars(name, mesh.cells());
+  for (const std::string& name : asked.vectors) fields.vectors(name, mesh.cells());
+}
+
 }  // namespace
 
 void check_particle_fields(const Message& result, const Scene& scene, const Mesh& mesh,
@@ -36,6 +42,7 @@ void check_particle_fields(const Message& result, const Scene& scene, const Mesh
   fields.vectors(field::drag_source, mesh.cells());
   fields.vectors(field::impulse_given, mesh.cells());
   fields.vectors(field::particle_velocity, mesh.cells());
+  require_asked(fields, asked_of_particles(scene), mesh);
   for (const auto* name : {field::particle_volume, field::particle_count, field::particle_mass,
                            field::excess_moved, field::wall_seconds})
     fields.number(name);
@@ -65,6 +72,7 @@ void check_fluid_fields(const Message& result, const Scene& scene, const Mesh& m
   fields.vectors(field::velocity, mesh.cells());
   fields.scalars(field::pressure, mesh.cells());
   fields.vectors(field::pressure_gradient, mesh.cells());
+  require_asked(fields, asked_of_fluid(scene), mesh);
   if (step > 0) {
     fields.vectors(field::impulse_taken, mesh.cells());
     for (const auto* name :

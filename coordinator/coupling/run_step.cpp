@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coordinator/coupling/check_fields.hpp"
+#include "proto/participant/asked_fields.hpp"
 #include "proto/participant/field_names.hpp"
 
 namespace fluxpact {
@@ -17,11 +18,17 @@ Message advance_message(const Window& window) {
   return message;
 }
 
+void share_asked(Message& to, Message& from, const AskedFields& asked) {
+  for (const auto* names : {&asked.scalars, &asked.vectors})
+    for (const std::string& name : *names) share_array(to, from, name);
+}
+
 /// The particles move under the committed fluid state; what comes back belongs to the window's end.
 Message advance_particles(const Coupling& coupling, const Window& window, CommittedState& state) {
   Message request = advance_message(window);
   for (const auto* name : {field::velocity, field::pressure_gradient})
     share_array(request, state.fluid, name);
+  share_asked(request, state.fluid, asked_of_fluid(coupling.scene));
   Message result = coupling.session.ask(Role::particles, request);
   check_particle_fields(result, coupling.scene, coupling.mesh, window.step);
   return result;
@@ -33,6 +40,7 @@ Message advance_fluid(const Coupling& coupling, const Window& window, Message& p
   Message request = advance_message(window);
   for (const auto* name : {field::voidage, field::drag_coefficient, field::drag_source})
     share_array(request, particles, name);
+  share_asked(request, particles, asked_of_particles(coupling.scene));
   Message result = coupling.session.ask(Role::fluid, request);
   check_fluid_fields(result, coupling.scene, coupling.mesh, window.step);
   return result;
@@ -103,16 +111,17 @@ AuditRow audit(const Coupling& coupling, const Window& window, const CommittedSt
                          .face_flux = fluid.scalars(field::face_flux, coupling.mesh.faces()),
                          .particle_volume = particles.number(field::particle_volume)},
                         state.mass);
-  const auto& forces = coupling.scene.interphase.forces;
+  const bool returns = !asked_of_particles(coupling.scene).empty();
   row.momentum = audit_momentum(
       coupling.mesh,
       {.length = window.length,
-       .pressure_gradient_force =
-           coupling.scene.interphase.model == PressureModel::a &&
-           std::ranges::find(forces, InterphaseForce::pressure_gradient) != forces.end(),
+       .pressure_gradient_force = coupling.scene.interphase.model == PressureModel::a &&
+                                  has_force(coupling.scene, InterphaseForce::pressure_gradient),
        .voidage = voidage,
        .drag_coefficient = particles.scalars(field::drag_coefficient, cells),
        .drag_source = particles.vectors(field::drag_source, cells),
+       .pressure_return =
+           returns ? particles.scalars(field::pressure_return, cells) : std::span<const double>{},
        .velocity = fluid.vectors(field::velocity, cells),
        .pressure_gradient = fluid.vectors(field::pressure_gradient, cells),
        .impulse_taken = fluid.vectors(field::impulse_taken, cells),

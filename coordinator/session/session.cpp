@@ -9,6 +9,7 @@
 #include "coordinator/session/interrupt.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/message/mesh_message.hpp"
+#include "proto/participant/asked_fields.hpp"
 #include "proto/scene/names.hpp"
 
 namespace fluxpact {
@@ -178,6 +179,19 @@ void Session::refuse(const std::string& routing, const std::string& reason) {
 }
 
 void Session::check_matching() const {
+  const auto check_asked = [&](const Peer& one, const AskedFields& asked) {
+    for (const auto* names : {&asked.scalars, &asked.vectors}) {
+      for (const std::string& field : *names) {
+        if (std::ranges::find(one.gives, field) != one.gives.end()) continue;
+        throw ProtocolError(
+            "interphase.forces of the scene needs the field '{}', which {} ({}) does not give; "
+            "leave that force out, or use another backend",
+            field, one.name, one.backend);
+      }
+    }
+  };
+  check_asked(peers_[static_cast<std::size_t>(Role::fluid)], asked_of_fluid(scene_));
+  check_asked(peers_[static_cast<std::size_t>(Role::particles)], asked_of_particles(scene_));
   for (const Peer& one : peers_) {
     const Peer& other = peers_[1 - static_cast<std::size_t>(one.role)];
     for (const std::string& field : one.needs) {

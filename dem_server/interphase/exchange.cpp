@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "dem_server/interphase/forces.hpp"
 #include "proto/base/errors.hpp"
+#include "proto/participant/asked_fields.hpp"
+#include "proto/participant/field_names.hpp"
 
 namespace fluxpact {
 namespace {
@@ -19,23 +23,69 @@ double carried_share(const Vector3& load, const Vector3& acceleration) {
   return std::clamp(-(acceleration - load).dot(load) / load_squared, 0.0, 1.0);
 }
 
-Vector3 predicted_velocity(const ExchangeSettings& settings, const Prediction& past, double window,
-                           const Vector3& gradient, const ParticleState& particles,
-                           const ParticleBulk& bulk, int i) {
+/// v*, and 1 − s: the part of a further force that would move the particle.
+struct Foreseen {
+  Vector3 velocity;
+  double free = 0;
+};
+
+Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const Offer& offer,
+                 const Vector3& gradient, const ParticleState& particles, const ParticleBulk& bulk,
+                 int i) {
   const Vector3& velocity = particles.velocity[i];
-  if (!settings.mobile || particles.is_fixed(i)) return velocity;
+  if (!settings.mobile || particles.is_fixed(i)) return {velocity, 0};
   Vector3 coming = settings.gravity;
   if (settings.pressure_gradient) coming -= gradient / particles.density[i];
   if (settings.buoyancy) {
     coming -= settings.fluid.density * settings.gravity / particles.density[i];
   }
+  if (!offer.known.empty()) coming += offer.known[i] / bulk.mass[i];
   const int before = past.row_before.empty() ? i : past.row_before[i];
-  if (!(past.length > 0) || before < 0) return velocity + window * coming;
+  if (!(past.length > 0) || before < 0) return {velocity + offer.window * coming, 1};
   const Vector3 load = settings.gravity + past.forces->force[before] / bulk.mass[i];
   const Vector3 change = velocity - past.velocity_before[before];
   const double carried = carried_share(load, change / past.length);
   const Vector3 drag = past.forces->drag_impulse[before] / (bulk.mass[i] * past.length);
-  return velocity + window * ((1 - carried) * coming - carried * drag);
+  return {velocity + offer.window * ((1 - carried) * coming - carried * drag), 1 - carried};
+}
+
+/// E of one particle.
+Vector3 known_force(const ExchangeSettings& settings, const FluidSeen& fluid,
+                    const ParticleCellWeights& weights, const LiftPoint& lift, double volume,
+                    double added_mass, int i) {
+  Vector3 force = Vector3::Zero();
+  if (settings.viscous) force += volume * weights.gather(i, fluid.viscous_force, no_vector);
+  if (settings.saffman_lift) force += saffman_lift(lift, settings.fluid);
+  if (settings.magnus_lift) force += magnus_lift(lift, settings.fluid);
+  if (settings.added_mass) {
+    force += added_mass * weights.gather(i, fluid.convective_acceleration, no_vector);
+  }
+  return force;
+}
+
+/// Moves every particle's walk through the eddies over the window, and gives the drag law their
+/// velocity. `points`, `offer.coefficient`: those of the mean flow.
+void meet_eddies(const ExchangeSettings& settings, const FluidSeen& fluid,
+                 const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
+                 std::span<DragPoint> points, std::span<Vector3> fluctuation, Offer& offer) {
+  const int count = particles.size();
+  offer.eddies.resize(static_cast<std::size_t>(count));
+#pragma omp parallel for schedule(static) num_threads(settings.threads)
+  for (int i = 0; i < count; ++i) {
+    const int before = past.row_before.empty() ? i : past.row_before[i];
+    const bool known = before >= 0 && before < static_cast<int>(past.eddies.size());
+    Eddy eddy = known ? past.eddies[before] : Eddy{};
+    const ParticleCellWeights& weights = offer.weights;
+    const bool moves = settings.mobile && !particles.is_fixed(i) && offer.coefficient[i] > 0;
+    const EddyPoint point{
+        weights.gather(i, fluid.turbulent_energy, 0.0),
+        weights.gather(i, fluid.turbulent_dissipation, 0.0), points[i].slip,
+        moves ? bulk.mass[i] / offer.coefficient[i] : std::numeric_limits<double>::infinity()};
+    const Vector3 u = weights.gather(i, fluid.velocity, no_vector);
+    fluctuation[i] = mean_fluctuation(point, offer.window, settings.seed, particles.id[i], eddy);
+    points[i].slip = (u + fluctuation[i] - particles.velocity[i]).norm();
+    offer.eddies[i] = eddy;
+  }
 }
 
 }  // namespace
@@ -46,10 +96,16 @@ ExchangeSettings exchange_settings(const Scene& scene, bool mobile) {
   settings.gravity = scene.scene.gravity;
   settings.drag = drag_choice(scene.interphase);
   settings.model = scene.interphase.model;
-  settings.buoyancy =
-      std::ranges::find(scene.interphase.forces, InterphaseForce::pressure_gradient) !=
-      scene.interphase.forces.end();
+  settings.buoyancy = has_force(scene, InterphaseForce::pressure_gradient);
   settings.pressure_gradient = settings.buoyancy && settings.model == PressureModel::a;
+  settings.viscous = has_force(scene, InterphaseForce::viscous);
+  settings.added_mass = has_force(scene, InterphaseForce::added_mass);
+  settings.pressure_returns = !asked_of_particles(scene).empty();
+  settings.saffman_lift = has_force(scene, InterphaseForce::saffman_lift);
+  settings.magnus_lift = has_force(scene, InterphaseForce::magnus_lift);
+  settings.turbulent_dispersion = has_force(scene, InterphaseForce::turbulent_dispersion);
+  settings.crowding = scene.interphase.added_mass_crowding;
+  settings.seed = static_cast<std::uint64_t>(scene.interphase.dispersion_seed);
   settings.mobile = mobile;
   const int threads = scene.particles.numerics.threads;
   settings.threads = threads > 0 ? threads : omp_get_max_threads();
@@ -59,9 +115,36 @@ ExchangeSettings exchange_settings(const Scene& scene, bool mobile) {
 FluidSeen FluidView::of(const FluidSeen& fluid, const ParticleCellWeights& weights) {
   FluidSeen seen = fluid;
   seen.velocity = weights.seen(fluid.velocity, velocity_);
-  if (fluid.solved)
+  if (fluid.solved) {
     seen.pressure_gradient = weights.seen(fluid.pressure_gradient, pressure_gradient_);
+  }
+  // What the scene does not ask for is empty, and stays so.
+  const auto view = [&](auto& field, auto& buffer) {
+    if (!field.empty()) field = weights.seen(field, buffer);
+  };
+  view(seen.viscous_force, viscous_force_);
+  view(seen.convective_acceleration, convective_acceleration_);
+  view(seen.vorticity, vorticity_);
+  view(seen.turbulent_energy, turbulent_energy_);
+  view(seen.turbulent_dissipation, turbulent_dissipation_);
   return seen;
+}
+
+FluidSeen fluid_seen(const ExchangeSettings& settings, const Fields& in, int cells, bool solved) {
+  FluidSeen fluid{solved, in.vectors(field::velocity, cells),
+                  in.vectors(field::pressure_gradient, cells)};
+  if (settings.viscous) fluid.viscous_force = in.vectors(field::viscous_force, cells);
+  if (settings.added_mass) {
+    fluid.convective_acceleration = in.vectors(field::convective_acceleration, cells);
+  }
+  if (settings.saffman_lift || settings.magnus_lift) {
+    fluid.vorticity = in.vectors(field::vorticity, cells);
+  }
+  if (settings.turbulent_dispersion) {
+    fluid.turbulent_energy = in.scalars(field::turbulent_energy, cells);
+    fluid.turbulent_dissipation = in.scalars(field::turbulent_dissipation, cells);
+  }
+  return fluid;
 }
 
 void measure_bulk(const ParticleState& particles, ParticleBulk& bulk) {
@@ -82,16 +165,24 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
   for (int i = 0; i < count; ++i) {
     Vector3 drag = Vector3::Zero();
     Vector3 pressure = Vector3::Zero();
+    Vector3 known = Vector3::Zero();
     if (fluid.solved) {
       const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
       drag = offer.window * offer.coefficient[i] * (u - offer.velocity[i]);
       if (settings.pressure_gradient) {
-        pressure = -bulk.volume[i] * offer.weights.gather(i, fluid.pressure_gradient, no_vector);
+        const Vector3 gradient = offer.weights.gather(i, fluid.pressure_gradient, no_vector);
+        pressure = -bulk.volume[i] * gradient;
+        if (!offer.returned.empty()) drag += offer.window * offer.returned[i] * gradient;
       }
+      if (!offer.known.empty()) known = offer.window * offer.known[i];
     }
     forces.drag_impulse[i] = drag;
     forces.impulse[i] = drag + length * pressure;
     forces.force[i] = drag / length + pressure;
+    if (!offer.known.empty()) {
+      forces.impulse[i] += known;
+      forces.force[i] += known / length;
+    }
     if (settings.buoyancy) {
       forces.force[i] -= settings.fluid.density * bulk.volume[i] * settings.gravity;
     }
@@ -130,15 +221,60 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
         fmt::format("particle {} at ({}, {}, {}) m", particles.id[bad], x.x(), x.y(), x.z()),
         points_[bad], offer.coefficient[bad]);
   }
+  offer.known.clear();
+  offer.eddies.clear();
+  lead_.clear();
+  if (!offer.initial) add_further_forces(settings, fluid, particles, bulk, past, offer);
+  if (settings.pressure_returns) offer.returned.assign(size, 0.0);
 #pragma omp parallel for schedule(static) num_threads(settings.threads)
   for (int i = 0; i < count; ++i) {
+    const bool last_gradient = fluid.solved && !settings.pressure_returns;
     const Vector3 gradient =
-        fluid.solved ? offer.weights.gather(i, fluid.pressure_gradient, no_vector) : no_vector;
-    offer.velocity[i] =
-        predicted_velocity(settings, past, offer.window, gradient, particles, bulk, i);
+        last_gradient ? offer.weights.gather(i, fluid.pressure_gradient, no_vector) : no_vector;
+    const Foreseen coming = foresee(settings, past, offer, gradient, particles, bulk, i);
+    offer.velocity[i] = coming.velocity;
     if (settings.mobile && !particles.is_fixed(i)) {
       offer.coefficient[i] /= 1 + offer.coefficient[i] * offer.window / bulk.mass[i];
     }
+    if (settings.pressure_returns && !offer.initial) {
+      offer.returned[i] = offer.coefficient[i] * coming.free * offer.window / particles.density[i];
+    }
+    if (!lead_.empty()) offer.velocity[i] -= lead_[i];
+  }
+}
+
+void OfferMaker::add_further_forces(const ExchangeSettings& settings, const FluidSeen& fluid,
+                                    const ParticleState& particles, const ParticleBulk& bulk,
+                                    const Prediction& past, Offer& offer) {
+  const int count = particles.size();
+  const auto size = points_.size();
+  if (settings.added_mass || settings.turbulent_dispersion) lead_.assign(size, Vector3::Zero());
+  if (settings.turbulent_dispersion) {
+    meet_eddies(settings, fluid, particles, bulk, past, points_, lead_, offer);
+    drag_coefficients(settings.law, settings.model, settings.fluid, points_, settings.threads,
+                      offer.coefficient);
+  }
+  if (!settings.has_known()) return;
+  const bool lifts = settings.saffman_lift || settings.magnus_lift;
+  offer.known.resize(size);
+#pragma omp parallel for schedule(static) num_threads(settings.threads)
+  for (int i = 0; i < count; ++i) {
+    LiftPoint lift;
+    lift.diameter = points_[i].diameter;
+    lift.slip = offer.weights.gather(i, fluid.velocity, no_vector) - particles.velocity[i];
+    if (lifts) {
+      lift.vorticity = offer.weights.gather(i, fluid.vorticity, no_vector);
+      lift.spin = particles.spin[i];
+    }
+    double added = 0;
+    if (settings.added_mass) {
+      added = added_mass_coefficient(settings.crowding, points_[i].voidage) *
+              settings.fluid.density * bulk.volume[i];
+      const double whole = offer.coefficient[i] + added / offer.window;
+      lead_[i] = (offer.coefficient[i] * lead_[i] - added / offer.window * lift.slip) / whole;
+      offer.coefficient[i] = whole;
+    }
+    offer.known[i] = known_force(settings, fluid, offer.weights, lift, bulk.volume[i], added, i);
   }
 }
 
@@ -156,11 +292,28 @@ void deposit_offer(const Offer& offer, int threads, std::span<double> drag_coeff
         [&](int particle) -> Vector3 {
           return offer.coefficient[particle] * offer.velocity[particle];
         });
+    if (!offer.known.empty()) {
+      offer.weights.deposit(
+          cell, [&](const Vector3& share) { source -= share; },
+          [&](int particle) -> const Vector3& { return offer.known[particle]; });
+    }
     drag_coefficient[cell] = coefficient;
     drag_source[cell] = source;
   }
   offer.weights.spread(drag_coefficient);
   offer.weights.spread(drag_source);
+}
+
+void deposit_returned(const Offer& offer, int threads, std::span<double> pressure_return) {
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int cell = 0; cell < offer.weights.cells(); ++cell) {
+    double sum = 0;
+    offer.weights.deposit(
+        cell, [&](double share) { sum += share; },
+        [&](int particle) { return offer.returned[particle]; });
+    pressure_return[cell] = sum;
+  }
+  offer.weights.spread(pressure_return);
 }
 
 void deposit_vectors(const ParticleCellWeights& weights, std::span<const Vector3> particle_values,

@@ -9,6 +9,7 @@
 #include "dem_server/participant/precision_error.hpp"
 #include "proto/base/compensated_sum.hpp"
 #include "proto/base/errors.hpp"
+#include "proto/participant/asked_fields.hpp"
 #include "proto/participant/field_names.hpp"
 #include "proto/scene/names.hpp"
 
@@ -30,12 +31,15 @@ double total(std::span<const double> values) {
 }  // namespace
 
 Identity particle_identity(const std::string& backend) {
-  return {Role::particles,
-          backend,
-          {field::voidage, field::drag_coefficient, field::drag_source, field::impulse_given,
-           field::particle_velocity, field::particle_volume, field::particle_count,
-           field::particle_mass, field::excess_moved, field::wall_seconds},
-          {field::velocity, field::pressure_gradient}};
+  Identity identity{
+      Role::particles,
+      backend,
+      {field::voidage, field::drag_coefficient, field::drag_source, field::impulse_given,
+       field::particle_velocity, field::particle_volume, field::particle_count,
+       field::particle_mass, field::excess_moved, field::wall_seconds},
+      {field::velocity, field::pressure_gradient}};
+  for (std::string& name : all_asked_of_particles()) identity.gives.push_back(std::move(name));
+  return identity;
 }
 
 ParticleParticipant::ParticleParticipant(std::string backend, EngineFactory make_engine)
@@ -59,6 +63,7 @@ void ParticleParticipant::configure(const Scene& scene, const Mesh& mesh) {
   drag_source_.resize(cells);
   particle_velocity_.resize(cells);
   impulse_given_.assign(cells, Vector3::Zero());
+  if (settings_.pressure_returns) pressure_return_.resize(cells);
   pending_ = false;
   last_window_ = 0;
   mixed_.reset();
@@ -98,8 +103,7 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
         window.step);
   }
   const int cells = static_cast<int>(cell_volumes_.size());
-  const FluidSeen fluid{!committed_.initial, in.vectors(field::velocity, cells),
-                        in.vectors(field::pressure_gradient, cells)};
+  const FluidSeen fluid = fluid_seen(settings_, in, cells, !committed_.initial);
   measure_bulk(engine_->particles(), bulk_);
   window_forces(settings_, committed_, fluid_view_.of(fluid, committed_.weights),
                 engine_->particles(), bulk_, window.step, window.length, forces_);
@@ -117,7 +121,7 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
                     candidate_.weights.seen(std::span<const double>(voidage_), voidage_seen_),
                     engine_->particles(), bulk_,
                     {velocity_before_, window.length, &forces_,
-                     flow_ ? flow_->row_before() : std::span<const int>{}},
+                     flow_ ? flow_->row_before() : std::span<const int>{}, committed_.eddies},
                     candidate_);
   // By the weights the impulse was computed with: those are what the fluid answered to.
   deposit_vectors(committed_.weights, forces_.impulse, settings_.threads, impulse_given_);
@@ -139,6 +143,10 @@ void ParticleParticipant::publish(double wall_seconds, Fields& out) {
   out.add(field::voidage, voidage_);
   out.add(field::drag_coefficient, drag_coefficient_);
   out.add(field::drag_source, drag_source_);
+  if (settings_.pressure_returns) {
+    deposit_returned(candidate_, settings_.threads, pressure_return_);
+    out.add(field::pressure_return, pressure_return_);
+  }
   out.add(field::impulse_given, impulse_given_);
   out.add(field::particle_velocity, particle_velocity_);
   out.add_number(field::particle_volume, total(bulk_.volume));

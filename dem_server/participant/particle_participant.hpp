@@ -34,9 +34,10 @@ class ParticleParticipant : public Participant {
   /// `in` may hold the fluid's initial velocity; without it the drag coefficient is that at u = 0.
   void start(const Fields& in, Fields& out) override;
 
-  /// Needs velocity and pressure_gradient of the committed fluid state, one row a cell. Throws
-  /// ProtocolError if they are missing or the last candidate was neither committed nor rolled back,
-  /// NumericsError if a particle leaves the mesh, a cell is over-full, a force is not finite.
+  /// Needs velocity and pressure_gradient of the committed fluid state, one row a cell, and what
+  /// the scene's forces ask for (asked_fields.hpp). Throws ProtocolError if they are missing or the
+  /// last candidate was neither committed nor rolled back, NumericsError if a particle leaves the
+  /// mesh, a cell is over-full, a force is not finite.
   void advance(const Window& window, const Fields& in, Fields& out,
                const Progress& progress) override;
   void commit() override;
@@ -90,6 +91,7 @@ class ParticleParticipant : public Participant {
   std::vector<double> voidage_;
   std::vector<double> drag_coefficient_;
   std::vector<Vector3> drag_source_;
+  std::vector<double> pressure_return_;  ///< empty unless pressure returns
   std::vector<Vector3> impulse_given_;
   std::vector<Vector3> particle_velocity_;
   std::vector<double> id_;

@@ -8,8 +8,8 @@ namespace fluxpact::field {
 // From the particle side, one row a cell.
 inline constexpr auto voidage = "voidage";  ///< ε^{n+1} [-]
 inline constexpr auto drag_coefficient =
-    "drag_coefficient";  ///< B = Σ w ζ/(1+b) [kg/s]: force on the fluid is S − B u
-inline constexpr auto drag_source = "drag_source";      ///< S = Σ w ζ/(1+b) v* [N], vector
+    "drag_coefficient";  ///< B = Σ w k [kg/s]: force on the fluid is S − B u
+inline constexpr auto drag_source = "drag_source";      ///< S = Σ w (k v* − E) [N], vector
 inline constexpr auto impulse_given = "impulse_given";  ///< Σ w I: impulse that the fluid gave the
                                                         ///< particles in this window [N s], vector
 inline constexpr auto particle_velocity =
@@ -58,7 +58,24 @@ inline constexpr auto velocity =
 inline constexpr auto pressure = "pressure";                    ///< p_d = p − ρ g·x [Pa]
 inline constexpr auto pressure_gradient = "pressure_gradient";  ///< ∇p_d [Pa/m], vector
 inline constexpr auto impulse_taken =
-    "impulse_taken";  ///< Δt (S − B u^{n+1}): impulse that drag gave the fluid [N s], vector
+    "impulse_taken";  ///< Δt (S − B u^{n+1} − A ∇p_d): impulse that drag and the other forces of
+                      ///< the particles gave the fluid [N s], vector
+
+// From the fluid side, only if the scene's forces ask for it (asked_of_fluid). One row a cell.
+inline constexpr auto viscous_force =
+    "viscous_force";  ///< ∇·[ε μ (∇u + ∇uᵀ − 2/3 ∇·u)] [N/m³], molecular viscosity; vector
+inline constexpr auto convective_acceleration =
+    "convective_acceleration";                                ///< (u·∇)u [m/s²], vector
+inline constexpr auto vorticity = "vorticity";                ///< ∇×u [1/s], vector
+inline constexpr auto turbulent_energy = "turbulent_energy";  ///< k [m²/s²]
+inline constexpr auto turbulent_dissipation = "turbulent_dissipation";  ///< [m²/s³]
+
+// From the particle side, only if the scene's forces ask for it (asked_of_particles). One row a
+// cell.
+inline constexpr auto pressure_return =
+    "pressure_return";  ///< A [m³]: force on the fluid is S − B u − A ∇p_d. What the pressure
+                        ///< gradient adds to the particles' velocity within the window, and so
+                        ///< to their drag
 
 // From the fluid side, numbers.
 inline constexpr auto solver_iterations = "solver_iterations";

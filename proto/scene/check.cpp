@@ -287,6 +287,40 @@ void check_interphase(const Scene& scene, Findings& findings) {
   }
 }
 
+/// What a force of the fluid on the particles needs of the rest of the scene.
+void check_forces(const Scene& scene, Findings& findings) {
+  const std::string path = "interphase.forces";
+  if (!findings.sound(path)) return;
+  const InterphaseSettings& interphase = scene.interphase;
+  for (const InterphaseForce force : interphase.forces) {
+    if (interphase.voidage == VoidageMap::prescribed &&
+        force != InterphaseForce::pressure_gradient && findings.sound("interphase.voidage")) {
+      findings.add(path, fmt::format("`{}` acts on particles, and with `voidage: prescribed` there "
+                                     "are none; remove it",
+                                     name_of(force)));
+    }
+  }
+  if (has_force(scene, InterphaseForce::viscous) && interphase.model == PressureModel::b &&
+      findings.sound("interphase.model")) {
+    findings.add(path,
+                 "`viscous` has no meaning with `model: b`, where the fluid alone bears pressure "
+                 "and stress; remove it, or use `model: a`");
+  }
+  if (!has_force(scene, InterphaseForce::turbulent_dispersion)) return;
+  if (scene.fluid.turbulence.model != TurbulenceModel::k_epsilon &&
+      findings.sound("fluid.turbulence.model")) {
+    findings.add(path,
+                 fmt::format("`turbulent_dispersion` takes its eddies from k and epsilon, and "
+                             "fluid.turbulence.model is `{}`; use `k_epsilon`, or remove it",
+                             name_of(scene.fluid.turbulence.model)));
+  }
+  if (interphase.drag == DragLaw::none && findings.sound("interphase.drag")) {
+    findings.add(path,
+                 "`turbulent_dispersion` acts through the drag, and interphase.drag is `none`; "
+                 "choose a law, or remove it");
+  }
+}
+
 void check_numerics(const Scene& scene, Findings& findings) {
   if (is_sound(findings, {"fluid.numerics.time", "coupling.continuity"}) &&
       scene.fluid.numerics.time == TimeScheme::bdf2 &&
@@ -342,6 +376,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_insertion(scene, findings);
   check_interphase(scene, findings);
   check_drag(scene, findings);
+  check_forces(scene, findings);
   check_numerics(scene, findings);
   check_launch(scene, findings);
 }

@@ -232,6 +232,16 @@ inline constexpr auto enum_names<DragLaw> = std::to_array<Named<DragLaw>>({
 template <>
 inline constexpr auto enum_names<InterphaseForce> = std::to_array<Named<InterphaseForce>>({
     {InterphaseForce::pressure_gradient, "pressure_gradient"},
+    {InterphaseForce::viscous, "viscous"},
+    {InterphaseForce::added_mass, "added_mass"},
+    {InterphaseForce::saffman_lift, "saffman_lift"},
+    {InterphaseForce::magnus_lift, "magnus_lift"},
+    {InterphaseForce::turbulent_dispersion, "turbulent_dispersion"},
+});
+template <>
+inline constexpr auto enum_names<Crowding> = std::to_array<Named<Crowding>>({
+    {Crowding::none, "none"},
+    {Crowding::zuber, "zuber"},
 });
 
 /// The word for a value.

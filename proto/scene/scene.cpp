@@ -29,6 +29,11 @@ bool has_particles(const Scene& scene) {
   return !scene.particles.insertion.empty() || !scene.particles.inflow.empty();
 }
 
+bool has_force(const Scene& scene, InterphaseForce force) {
+  const auto& forces = scene.interphase.forces;
+  return std::find(forces.begin(), forces.end(), force) != forces.end();
+}
+
 bool particles_flow(const Scene& scene) {
   const ParticleSettings& particles = scene.particles;
   if (!has_particles(scene)) return false;

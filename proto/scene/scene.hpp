@@ -416,7 +416,15 @@ enum class DragLaw {
   huilin_gidaspow,
   expression,
 };
-enum class InterphaseForce { pressure_gradient };
+enum class InterphaseForce {
+  pressure_gradient,
+  viscous,
+  added_mass,
+  saffman_lift,
+  magnus_lift,
+  turbulent_dispersion
+};
+enum class Crowding { none, zuber };
 enum class PressureModel { a, b };
 
 /// A solid phase given by a formula, at rest, without particles: for verification.
@@ -467,6 +475,8 @@ struct InterphaseSettings {
   SyamlalObrienSettings syamlal_obrien;    ///< drag: syamlal_obrien
   DragExpressionSettings drag_expression;  ///< drag: expression
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
+  Crowding added_mass_crowding = Crowding::none;
+  int dispersion_seed = 1;
   std::optional<PrescribedSettings> prescribed;
 };
 
@@ -495,5 +505,8 @@ bool particles_flow(const Scene& scene);
 
 /// Whether there are particles at any time.
 bool has_particles(const Scene& scene);
+
+/// Whether interphase.forces names it.
+bool has_force(const Scene& scene, InterphaseForce force);
 
 }  // namespace fluxpact

@@ -2,6 +2,7 @@
 // schema.hpp.
 #pragma once
 
+#include <algorithm>
 #include <numbers>
 
 #include "proto/scene/key.hpp"
@@ -357,8 +358,29 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
          .only_with = "drag: expression",
          .meaning = "The formula."},
         interphase.drag_expression);
-  visit({.name = "forces", .meaning = "Further forces of the fluid on the particles."},
+  visit({.name = "forces",
+         .meaning = "Further forces of the fluid on the particles (docs/theory.md, section 3): "
+                    "`pressure_gradient`, buoyancy included; `viscous`: the divergence of the "
+                    "fluid's viscous stress (model a); `added_mass`, of liquids; `saffman_lift` in "
+                    "shear; `magnus_lift` of spinning spheres; `turbulent_dispersion` by the "
+                    "eddies of `model: k_epsilon`."},
         interphase.forces);
+  const auto asked = [&](InterphaseForce force) {
+    return std::ranges::find(interphase.forces, force) != interphase.forces.end();
+  };
+  visit({.name = "added_mass_crowding",
+         .applies = asked(InterphaseForce::added_mass),
+         .only_with = "forces: [added_mass]",
+         .meaning = "How the coefficient of added mass, 1/2 of a sphere alone, grows with the "
+                    "solid fraction φ: not, or by (1 + 2 φ)/(1 - φ) (Zuber 1964)."},
+        interphase.added_mass_crowding);
+  visit({.name = "dispersion_seed",
+         .range = not_negative,
+         .applies = asked(InterphaseForce::turbulent_dispersion),
+         .only_with = "forces: [turbulent_dispersion]",
+         .meaning = "Of the random eddies of `turbulent_dispersion`: the same seed gives the same "
+                    "eddies."},
+        interphase.dispersion_seed);
   visit({.name = "prescribed",
          .otherwise = "not set; required with `voidage: prescribed`",
          .meaning = "A solid phase at rest given by a formula, for verification."},

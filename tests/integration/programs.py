@@ -87,6 +87,12 @@ class ProgramTest(unittest.TestCase):
         self.addCleanup(self.end, process)
         return process
 
+    def participant(self, *command):
+        """A server or a participant of our own, started by hand."""
+        process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(self.end, process)
+        return process
+
     def end(self, process):
         if process.poll() is None:
             process.kill()

@@ -2,7 +2,6 @@
 
 import pathlib
 import socket
-import subprocess
 import sys
 import unittest
 
@@ -42,11 +41,6 @@ def free_port():
 
 
 class PythonParticipant(ProgramTest):
-    def participant(self, *command):
-        process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(self.end, process)
-        return process
-
     def test_takes_part_in_a_run(self):
         port = free_port()
         endpoint = f"tcp://127.0.0.1:{port}"

@@ -5,7 +5,10 @@
 #include <chrono>
 
 #include "cfd_server/scalars/fluid_scalars.hpp"
+#include "cfd_server/turbulence/turbulence.hpp"
+#include "cfd_server/vans/flow_fields.hpp"
 #include "proto/base/errors.hpp"
+#include "proto/participant/asked_fields.hpp"
 #include "proto/participant/field_names.hpp"
 
 namespace fluxpact {
@@ -27,11 +30,13 @@ void add_scalar(const std::string& name, const ScalarField& scalar, Fields& out)
 }  // namespace
 
 Identity NativeFluid::identity() const {
-  return {Role::fluid,
-          "native",
-          {field::face_flux, field::velocity, field::pressure, field::pressure_gradient,
-           field::impulse_taken},
-          {field::voidage, field::drag_coefficient, field::drag_source}};
+  Identity identity{Role::fluid,
+                    "native",
+                    {field::face_flux, field::velocity, field::pressure, field::pressure_gradient,
+                     field::impulse_taken},
+                    {field::voidage, field::drag_coefficient, field::drag_source}};
+  for (std::string& name : all_asked_of_fluid()) identity.gives.push_back(std::move(name));
+  return identity;
 }
 
 VansSolver& NativeFluid::solver() {
@@ -43,32 +48,51 @@ VansSolver& NativeFluid::solver() {
 void NativeFluid::configure(const Scene& scene, const Mesh& mesh) {
   solver_ = std::make_unique<VansSolver>(scene, mesh);
   cells_ = mesh.cells();
+  pressure_returns_ = !asked_of_particles(scene).empty();
   impulse_.assign(static_cast<std::size_t>(cells_), Vector3::Zero());
 }
 
 void NativeFluid::start(const Fields& in, Fields& out) {
   solver().start(in.scalars(field::voidage, cells_));
   add_state(solver().committed(), out);
+  if (const FlowFields* flow = solver().flow_fields()) add_flow(*flow, out);
   const FluidScalars* const scalars = solver().scalars();
   for (int i = 0; scalars != nullptr && i < scalars->count(); ++i)
     add_scalar(scalars->name(i), scalars->committed(i), out);
 }
 
+void NativeFluid::add_flow(const FlowFields& flow, Fields& out) {
+  const auto add = [&](const char* name, std::span<const Vector3> values) {
+    if (!values.empty()) out.add(name, values);
+  };
+  add(field::viscous_force, flow.viscous_force());
+  add(field::convective_acceleration, flow.convective_acceleration());
+  add(field::vorticity, flow.vorticity());
+  if (!flow.turbulent()) return;
+  const TurbulentLevel& level = solver().turbulence()->candidate();
+  out.add(field::turbulent_energy, std::span<const double>(level.energy));
+  out.add(field::turbulent_dissipation, std::span<const double>(level.dissipation));
+}
+
 void NativeFluid::advance(const Window& window, const Fields& in, Fields& out,
                           const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  const SolidsInput solids{in.scalars(field::voidage, cells_),
-                           in.scalars(field::drag_coefficient, cells_),
-                           in.vectors(field::drag_source, cells_)};
+  const SolidsInput solids{
+      in.scalars(field::voidage, cells_), in.scalars(field::drag_coefficient, cells_),
+      in.vectors(field::drag_source, cells_),
+      pressure_returns_ ? in.scalars(field::pressure_return, cells_) : std::span<const double>{}};
   solver().advance(window, solids, progress);
   const FluidState& state = solver().candidate();
   const auto velocity = window_velocity(state);
+  const auto gradient = window_pressure_gradient(state);
   for (int cell = 0; cell < cells_; ++cell) {
-    impulse_[cell] =
-        window.length * (solids.drag_source[cell] - solids.drag_coefficient[cell] * velocity[cell]);
+    Vector3 force = solids.drag_source[cell] - solids.drag_coefficient[cell] * velocity[cell];
+    if (pressure_returns_) force -= solids.pressure_return[cell] * gradient[cell];
+    impulse_[cell] = window.length * force;
   }
   add_state(state, out);
   out.add(field::impulse_taken, std::span<const Vector3>(impulse_));
+  if (const FlowFields* flow = solver().flow_fields()) add_flow(*flow, out);
   const FluidScalars* const scalars = solver().scalars();
   for (int i = 0; scalars != nullptr && i < scalars->count(); ++i)
     add_scalar(scalars->name(i), scalars->candidate(i), out);

@@ -14,7 +14,8 @@ class NativeFluid final : public Participant {
   Identity identity() const override;
   void configure(const Scene& scene, const Mesh& mesh) override;
 
-  /// in: voidage. out: velocity, pressure, pressure_gradient, face_flux.
+  /// in: voidage. out: velocity, pressure, pressure_gradient, face_flux; and as `advance` does what
+  /// the scene's forces ask for (asked_fields.hpp).
   void start(const Fields& in, Fields& out) override;
 
   /// in: voidage, drag_coefficient, drag_source. out: face_flux, velocity, pressure,
@@ -31,7 +32,10 @@ class NativeFluid final : public Participant {
  private:
   VansSolver& solver();
 
+  void add_flow(const FlowFields& flow, Fields& out);
+
   int cells_ = 0;
+  bool pressure_returns_ = false;  ///< whether pressure_return comes with the solids
   std::unique_ptr<VansSolver> solver_;
   std::vector<Vector3> impulse_;  ///< [N s] taken in the window in hand
 };

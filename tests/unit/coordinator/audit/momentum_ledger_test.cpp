@@ -51,8 +51,8 @@ struct Sample {
 
   MomentumAudit audit(const MomentumTotal& committed, bool with_pressure = true) const {
     return audit_momentum(mesh,
-                          {window_length, with_pressure, voidage, coefficient, source, velocity,
-                           gradient, taken, given},
+                          {window_length, with_pressure, voidage, coefficient, source, returned,
+                           velocity, gradient, taken, given},
                           committed);
   }
 
@@ -60,6 +60,7 @@ struct Sample {
   std::vector<double> voidage;
   std::vector<double> coefficient;
   std::vector<Vector3> source;
+  std::vector<double> returned;  // empty: no pressure returns
   std::vector<Vector3> velocity;
   std::vector<Vector3> gradient;
   std::vector<Vector3> taken;
@@ -115,6 +116,21 @@ TEST(MomentumLedger, leaves_the_pressure_out_where_the_particles_do_not_feel_it)
   EXPECT_LE((audit.momentum_to_fluid + sample.handed_over(false)).norm(),
             round_off * audit.total.scale);
   EXPECT_GT((sample.handed_over(false) - sample.handed_over(true)).norm(), 0.1 * audit.total.scale);
+}
+
+TEST(MomentumLedger, counts_the_pressure_that_particles_return_as_taken_by_the_fluid) {
+  Sample sample(5);
+  for (std::size_t c = 0; c < sample.taken.size(); ++c) {
+    sample.returned.push_back(0.3 * sample.mesh.cell_volumes[c]);
+    sample.taken[c] -= window_length * sample.returned[c] * sample.gradient[c];
+  }
+  const MomentumAudit audit = sample.audit({});
+  EXPECT_LE(audit.impulse_error, round_off);
+  EXPECT_LE((audit.momentum_to_fluid + sample.handed_over(true)).norm(),
+            round_off * audit.total.scale);
+  sample.returned[7] *= 1 + 1e-8;
+  EXPECT_GT(sample.audit({}).impulse_error, 1e-11);
+  EXPECT_EQ(sample.audit({}).impulse_error_cell, 7);
 }
 
 TEST(MomentumLedger, finds_the_cell_of_one_wrong_impulse) {

@@ -7,6 +7,7 @@
 
 #include "bench.hpp"
 #include "proto/base/errors.hpp"
+#include "proto/participant/asked_fields.hpp"
 
 namespace fluxpact {
 namespace {
@@ -41,8 +42,10 @@ TEST(ParticleParticipant, gives_all_fields_it_promises_and_needs_those_it_names)
   side->start({}, out);
   const auto given = copy(out);
   EXPECT_EQ(side->identity().role, Role::particles);
+  const auto if_asked = all_asked_of_particles();  // on the wire only if a force asks for them
   for (const std::string& name : side->identity().gives) {
-    EXPECT_TRUE(given.contains(name) || name == field::wall_seconds) << name;
+    const bool expected = std::ranges::find(if_asked, name) == if_asked.end();
+    EXPECT_EQ(given.contains(name) || name == field::wall_seconds, expected) << name;
   }
   EXPECT_EQ(out.number(field::particle_count), 60);
   EXPECT_NEAR(out.number(field::particle_mass), 100 * out.number(field::particle_volume), 1e-14);

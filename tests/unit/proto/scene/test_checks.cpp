@@ -163,6 +163,42 @@ TEST(SceneChecks, inserted_material_is_known) {
                {"nearest: `steel`", "allowed: glass, steel"});
 }
 
+std::string with_forces(const std::string& forces) {
+  return with("forces: []", "forces: [" + forces + "]");
+}
+
+TEST(SceneChecks, forces_fit_the_rest_of_the_scene) {
+  EXPECT_EQ(errors_in(with_forces("viscous, added_mass, saffman_lift, magnus_lift")), "");
+  const std::string forces = "s.yaml:52:3: interphase.forces: ";
+  expect_error(replaced(with_forces("viscous"), "drag: wen_yu", "model: b"),
+               forces + "`viscous` has no meaning with `model: b`", {"`model: a`"});
+  expect_error(with_forces("turbulent_dispersion"),
+               forces + "`turbulent_dispersion` takes its eddies", {"`none`", "`k_epsilon`"});
+  const std::string turbulent = replaced(
+      with_forces("turbulent_dispersion"), "  initial: {superficial: [0, 0, 1]}",
+      "  initial: {superficial: [0, 0, 1]}\n  turbulence: {model: k_epsilon, kinetic_energy: 1, "
+      "dissipation: 1, inlets: {jet: {length_scale: 0.01}, inlet: {length_scale: 0.01}}}");
+  EXPECT_EQ(errors_in(turbulent), "");
+  expect_error(replaced(turbulent, "drag: wen_yu", "drag: none"),
+               "s.yaml:53:3: interphase.forces: `turbulent_dispersion` acts through the drag",
+               {"choose a law"});
+  expect_error(replaced(prescribed_scene, "voidage: prescribed",
+                        "voidage: prescribed\n  forces: [added_mass]"),
+               "s.yaml:12:3: interphase.forces: `added_mass` acts on particles", {"remove it"});
+}
+
+TEST(SceneChecks, keys_of_a_force_have_no_meaning_without_it) {
+  EXPECT_EQ(errors_in(with_forces("added_mass")), "");
+  EXPECT_EQ(errors_in(replaced(with_forces("added_mass"), "drag: wen_yu",
+                               "drag: wen_yu\n  added_mass_crowding: zuber")),
+            "");
+  expect_error(with("drag: wen_yu", "drag: wen_yu\n  added_mass_crowding: zuber"),
+               "s.yaml:52:3: interphase.added_mass_crowding: has no meaning here", {"added_mass"});
+  expect_error(with("drag: wen_yu", "drag: wen_yu\n  dispersion_seed: 2"),
+               "s.yaml:52:3: interphase.dispersion_seed: has no meaning here",
+               {"turbulent_dispersion"});
+}
+
 TEST(SceneChecks, prescribed_voidage_has_its_formula_and_no_particles) {
   EXPECT_EQ(errors_in(prescribed_scene), "");
   expect_error(replaced(prescribed_scene,

@@ -7,10 +7,10 @@ namespace {
 TEST(SceneErrors, none_in_the_valid_scene) { EXPECT_EQ(errors_in(valid_scene), ""); }
 
 TEST(SceneErrors, unknown_key_names_the_nearest_and_the_allowed_ones) {
-  expect_error(
-      with("  drag: wen_yu", "  drga: wen_yu"), "s.yaml:51:3: interphase.drga: unknown key",
-      {"nearest: `drag`",
-       "allowed here: model, voidage, drag, syamlal_obrien, drag_expression, forces, prescribed"});
+  expect_error(with("  drag: wen_yu", "  drga: wen_yu"),
+               "s.yaml:51:3: interphase.drga: unknown key",
+               {"nearest: `drag`",
+                "allowed here: model, voidage, drag, syamlal_obrien, drag_expression, forces"});
   expect_error(with("interphase:", "weather: fine\ninterphase:"),
                "s.yaml:49:1: weather: unknown key", {"launch"});
 }

@@ -1,0 +1,338 @@
+// The forces beside drag in the exchange: momentum exact for every map and combination, and the
+// eliminations of added mass and pressure gradient against their closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <tuple>
+
+#include "boxes.hpp"
+#include "dem_server/interphase/exchange.hpp"
+#include "dem_server/interphase/forces.hpp"
+#include "proto/scene/names.hpp"
+
+namespace fluxpact {
+namespace {
+
+using testing_boxes::box;
+
+const Vector3 zero = Vector3::Zero();
+
+/// Random fields of a fluid.
+struct RandomFluid {
+  std::vector<Vector3> velocity, gradient, viscous, acceleration, vorticity;
+  std::vector<double> energy, dissipation;
+
+  RandomFluid(int cells, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> any(-1, 1);
+    const auto vector = [&](double size) {
+      return Vector3(size * any(random), size * any(random), size * any(random));
+    };
+    for (int c = 0; c < cells; ++c) {
+      velocity.push_back(vector(1));
+      gradient.push_back(vector(1e4));
+      viscous.push_back(vector(100));
+      acceleration.push_back(vector(10));
+      vorticity.push_back(vector(20));
+      energy.push_back(0.1 + 0.05 * any(random));
+      dissipation.push_back(1 + 0.5 * any(random));
+    }
+  }
+  FluidSeen seen() const {
+    return {true, velocity, gradient, viscous, acceleration, vorticity, energy, dissipation};
+  }
+};
+
+struct Combination {
+  std::string name;
+  bool viscous, added_mass, pressure_returns, lifts, dispersion;
+  PressureModel model;
+};
+
+const std::vector<Combination> combinations{
+    {"drag_alone", false, false, false, false, false, PressureModel::a},
+    {"viscous", true, false, false, false, false, PressureModel::a},
+    {"added_mass", false, true, true, false, false, PressureModel::a},
+    {"added_mass_of_model_b", false, true, false, false, false, PressureModel::b},
+    {"lifts", false, false, false, true, false, PressureModel::a},
+    {"dispersion", false, false, false, false, true, PressureModel::a},
+    {"all", true, true, true, true, true, PressureModel::a},
+};
+
+using Case = std::tuple<VoidageMap, Combination>;
+
+class Forces : public testing::TestWithParam<Case> {};
+
+ExchangeSettings settings_of(const Combination& c) {
+  ExchangeSettings settings;
+  settings.fluid = {1000, 1e-3};
+  settings.gravity = {0, 0, -9.81};
+  settings.law = DragLaw::gidaspow;
+  settings.model = c.model;
+  settings.pressure_gradient = c.model == PressureModel::a;
+  settings.viscous = c.viscous;
+  settings.added_mass = c.added_mass;
+  settings.pressure_returns = c.pressure_returns;
+  settings.saffman_lift = settings.magnus_lift = c.lifts;
+  settings.turbulent_dispersion = c.dispersion;
+  settings.crowding = Crowding::zuber;
+  settings.threads = 2;
+  return settings;
+}
+
+/// 60 spheres all over a box of one metre, moving and spinning; every seventh is fixed.
+ParticleState cloud(double density, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> place(0.05, 0.95);
+  std::uniform_real_distribution<double> speed(-1, 1);
+  ParticleState particles;
+  for (int i = 0; i < 60; ++i) {
+    const bool fixed = i % 7 == 0;
+    particles.id.push_back(i + 1);
+    particles.position.emplace_back(place(random), place(random), place(random));
+    particles.velocity.emplace_back(speed(random), speed(random), speed(random));
+    if (fixed) particles.velocity.back().setZero();
+    particles.spin.emplace_back(10 * speed(random), 10 * speed(random), 10 * speed(random));
+    particles.radius.push_back(0.02 + 0.04 * place(random));
+    particles.density.push_back(density * place(random));
+    particles.fixed.push_back(fixed ? 1 : 0);
+  }
+  return particles;
+}
+
+void expect_momentum_exact(const ExchangeSettings& settings, const Mesh& mesh,
+                           WeightsBuilder& builder, const ParticleState& particles,
+                           const FluidSeen& before, const FluidSeen& answer, double window) {
+  ParticleBulk bulk;
+  measure_bulk(particles, bulk);
+  Offer offer;
+  offer.initial = false;
+  offer.window = window;
+  builder.build(particles, 1, offer.weights);
+  std::vector<double> voidage(mesh.cell_volumes.size());
+  map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, mesh.cell_centres, 1, 2, voidage);
+  OfferMaker maker;
+  maker.make(settings, before, voidage, particles, bulk, {}, offer);
+  std::vector<double> coefficient(voidage.size());
+  std::vector<double> returned(voidage.size(), 0.0);
+  std::vector<Vector3> source(voidage.size());
+  deposit_offer(offer, 2, coefficient, source);
+  if (settings.pressure_returns) deposit_returned(offer, 2, returned);
+  WindowForces forces;
+  window_forces(settings, offer, answer, particles, bulk, 2, window, forces);
+
+  // What the coordinator sums up of the wire.
+  Vector3 difference = Vector3::Zero();
+  double scale = 0;
+  for (int c = 0; c < mesh.cells(); ++c) {
+    const Vector3 drag = coefficient[c] * answer.velocity[c];
+    const Vector3 back = returned[c] * answer.pressure_gradient[c];
+    Vector3 lost = -(source[c] - drag - back);
+    if (settings.pressure_gradient)
+      lost -= (1 - voidage[c]) * mesh.cell_volumes[c] * answer.pressure_gradient[c];
+    difference += window * lost;
+    scale += window * (source[c].norm() + drag.norm() + back.norm() + lost.norm());
+  }
+  double handed = 0;
+  for (const Vector3& impulse : forces.impulse) {
+    difference -= impulse;
+    handed += impulse.norm();
+  }
+  // Sums of 60 particles and 120 cells of this scale, and 1 − ε of some 1e-2, known to 1e-16.
+  EXPECT_LE(difference.norm(), 1e-13 * scale);
+  EXPECT_GT(handed, 1e-4 * scale);
+}
+
+TEST_P(Forces, give_the_fluid_the_opposite_of_what_acts_on_the_particles) {
+  const auto& [map, combination] = GetParam();
+  const ExchangeSettings settings = settings_of(combination);
+  const Mesh mesh = box({1, 1, 1}, {5, 4, 6}, {Axis::x});
+  WeightsBuilder builder(mesh, map, 2);
+  for (const double ratio : {0.1, 2.5, 1e5}) {
+    std::mt19937_64 random(11);
+    const ParticleState particles = cloud(1000 * ratio, random);
+    const RandomFluid before(mesh.cells(), random);
+    const RandomFluid answer(mesh.cells(), random);
+    for (const double window : {1e-6, 1e-3, 1.0, 1e3}) {
+      SCOPED_TRACE(testing::Message() << "density ratio " << ratio << ", window " << window);
+      expect_momentum_exact(settings, mesh, builder, particles, before.seen(), answer.seen(),
+                            window);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Everywhere, Forces,
+                         testing::Combine(testing::Values(VoidageMap::exact, VoidageMap::centroid),
+                                          testing::ValuesIn(combinations)),
+                         [](const auto& test) {
+                           return std::string(name_of(std::get<0>(test.param))) + "_" +
+                                  std::get<1>(test.param).name;
+                         });
+
+/// One sphere in one cell of fluid, without walls and weight.
+struct Pair {
+  explicit Pair(double ratio) {
+    std::mt19937_64 random(3);
+    particles = cloud(0, random);
+    for (auto* values : {&particles.position, &particles.velocity, &particles.spin})
+      values->resize(1);
+    particles.id.resize(1);
+    particles.radius.assign(1, 0.05);
+    particles.density.assign(1, 1000 * ratio);
+    particles.fixed.clear();
+    particles.position[0] = {0.5, 0.5, 0.5};
+    particles.velocity[0] = Vector3::Zero();
+    measure_bulk(particles, bulk);
+    settings = settings_of(combinations[3]);
+    settings.gravity.setZero();
+    settings.buoyancy = false;
+    settings.law = DragLaw::stokes;
+    settings.model = PressureModel::a;
+    settings.pressure_gradient = false;
+    settings.crowding = Crowding::none;
+  }
+
+  void map() {
+    WeightsBuilder(mesh, VoidageMap::exact, 1).build(particles, 1, offer.weights);
+    map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, mesh.cell_centres, 1, 1, voidage);
+  }
+  void offer_window(double window, const FluidSeen& fluid) {
+    offer.initial = false;
+    offer.window = window;
+    OfferMaker().make(settings, fluid, voidage, particles, bulk, {}, offer);
+  }
+  void move(double window, const FluidSeen& fluid) {
+    WindowForces forces;
+    window_forces(settings, offer, fluid, particles, bulk, 1, window, forces);
+    particles.velocity[0] += window * (settings.gravity + forces.force[0] / bulk.mass[0]);
+  }
+
+  /// One window: offer, the fluid's own balance (mass `fluid_mass`), impulse.
+  void advance(double window) {
+    const std::vector<Vector3> none{Vector3::Zero()};
+    const std::vector<Vector3> old{velocity};
+    offer_window(window, {true, old, none, {}, none});
+    std::vector<double> coefficient(1);
+    std::vector<Vector3> source(1);
+    deposit_offer(offer, 1, coefficient, source);
+    velocity =
+        (fluid_mass * velocity + window * source[0]) / (fluid_mass + window * coefficient[0]);
+    const std::vector<Vector3> now{velocity};
+    move(window, {true, now, none, {}, none});
+  }
+
+  Mesh mesh = box({1, 1, 1}, {1, 1, 1});
+  ParticleState particles;
+  ParticleBulk bulk;
+  ExchangeSettings settings;
+  Offer offer;
+  std::vector<double> voidage{1};
+  double fluid_mass = 1;  ///< [kg]
+  Vector3 velocity{1, 0.5, 0};
+};
+
+TEST(AddedMass, brings_slip_down_as_the_closed_form_says_at_any_window_and_density) {
+  for (const double ratio : {0.1, 1.0, 2.5, 1000.0, 1e5}) {
+    for (const double over : {1e-3, 0.1, 1.0, 30.0, 1e4}) {  // Δt/τ
+      for (const double share : {0.1, 10.0, 1e4}) {          // fluid over particle
+        Pair pair(ratio);
+        pair.map();
+        const double mass = pair.bulk.mass[0];
+        pair.fluid_mass = share * mass;
+        const double zeta = stokes_drag({1, 0.1, 0}, pair.settings.fluid);
+        const double window = over * mass / zeta;
+        const double added = 0.5 * 1000 * pair.bulk.volume[0];
+        const double inverse = 1 / mass + 1 / pair.fluid_mass;
+        const double factor = (1 + inverse * added) / (1 + inverse * (added + zeta * window));
+        const Vector3 momentum = pair.fluid_mass * pair.velocity;
+        for (int i = 0; i < 3; ++i) {
+          const Vector3 slip = pair.velocity - pair.particles.velocity[0];
+          pair.advance(window);
+          const Vector3 now = pair.velocity - pair.particles.velocity[0];
+          // The difference of two speeds of 1 that agree in up to (1 + added mass/mass) digits.
+          EXPECT_LE((now - factor * slip).norm(), 1e-14 * (1 + added / mass)) << ratio << over;
+          EXPECT_GE(now.dot(slip), -1e-14);  // no overshoot
+          const Vector3 total = pair.fluid_mass * pair.velocity + mass * pair.particles.velocity[0];
+          EXPECT_LE((total - momentum).norm(), 1e-14 * (1 + added / mass) * momentum.norm());
+        }
+      }
+    }
+  }
+}
+
+/// A uniform suspension through which a given flux goes: one sphere in one cell where u = 0, and ∇p
+/// is what that takes. Returns the largest |v| over 400 windows, from v = 1.
+double largest_speed(double solids, double over, double ratio, bool eliminated) {
+  Pair pair(ratio);
+  pair.particles.radius[0] = std::cbrt(0.75 * solids / std::numbers::pi);  // in 1 m³
+  measure_bulk(pair.particles, pair.bulk);
+  pair.particles.velocity[0] = {1, 0, 0};
+  pair.settings.pressure_gradient = true;
+  pair.settings.pressure_returns = eliminated;
+  const double window = 1;
+  pair.settings.fluid.viscosity =
+      over * pair.bulk.mass[0] / (3 * std::numbers::pi * 2 * pair.particles.radius[0] * window);
+  const std::vector<Vector3> still{Vector3::Zero()};
+  std::vector<Vector3> gradient{Vector3::Zero()};
+  pair.map();
+  double largest = 0;
+  for (int i = 0; i < 400; ++i) {
+    pair.offer_window(window, {true, still, gradient, {}, still});
+    std::vector<double> coefficient(1);
+    std::vector<double> returned(1, 0.0);
+    std::vector<Vector3> source(1);
+    deposit_offer(pair.offer, 1, coefficient, source);
+    if (eliminated) deposit_returned(pair.offer, 1, returned);
+    gradient[0] = source[0] / (pair.voidage[0] + returned[0]);  // (ε V + A) ∇p = S − B u
+    pair.move(window, {true, still, gradient, {}, still});
+    largest = std::max(largest, pair.particles.velocity[0].norm());
+  }
+  return largest;
+}
+
+TEST(PressureReturn, solves_the_whole_equation_of_motion_with_the_gradient_of_the_answer) {
+  for (const double window : {1e-4, 1.0, 1e3}) {
+    Pair pair(2.5);
+    pair.settings.gravity = {0, 0, -9.81};
+    pair.settings.buoyancy = true;
+    pair.settings.pressure_gradient = true;
+    pair.settings.pressure_returns = true;
+    pair.settings.fluid.viscosity = 10;
+    const Vector3 v0(0.1, 0.2, -0.3);
+    pair.particles.velocity[0] = v0;
+    const std::vector<Vector3> u0{{1, -0.5, 0.2}}, u1{{0.7, 0.1, 0.9}};
+    const std::vector<Vector3> wrong{{1e6, 1e6, 1e6}}, gradient{{3000, -500, 1e4}};
+    const std::vector<Vector3> convective{{2, 0, -1}};
+    pair.map();
+    pair.offer_window(window, {true, u0, wrong, {}, convective});
+    pair.move(window, {true, u1, gradient, {}, convective});
+    const Vector3 v1 = pair.particles.velocity[0];
+    const double volume = pair.bulk.volume[0];
+    const double added = 500 * volume;
+    const double zeta = 3 * std::numbers::pi * 10 * 0.1;
+    const Vector3 forces = zeta * (u1[0] - v1) + 1500 * volume * pair.settings.gravity -
+                           volume * gradient[0] +
+                           added * ((u1[0] - u0[0]) / window + convective[0] - (v1 - v0) / window);
+    const Vector3 inertia = pair.bulk.mass[0] * (v1 - v0) / window;
+    // Weight, pressure and drag of the whole window cancel in v1.
+    const double free = window * (9.81 + gradient[0].norm() / 2500) + v0.norm();
+    const double scale = (zeta + added / window) * free + volume * gradient[0].norm();
+    EXPECT_LE((inertia - forces).norm(), 1e-14 * scale) << window;
+  }
+}
+
+TEST(PressureReturn, keeps_dense_suspensions_stable_that_a_lagged_gradient_does_not) {
+  for (const double solids : {0.05, 0.3, 0.5}) {
+    for (const double over : {1e-3, 1.0, 1e4}) {
+      for (const double ratio : {0.1, 2.5, 1000.0})
+        EXPECT_LE(largest_speed(solids, over, ratio, true), 1) << solids << over << ratio;
+    }
+  }
+  // The stability limit of the header: B + 2 φ β < 2 ε.
+  EXPECT_GT(largest_speed(0.4, 100, 2.5, false), 1e6);
+  EXPECT_LE(largest_speed(0.2, 100, 2.5, false), 2);
+}
+
+}  // namespace
+}  // namespace fluxpact

@@ -161,7 +161,8 @@ void describe(Visit& visit, ContactSettings& contact) {
         contact.walls);
   visit({.name = "pairs",
          .meaning = "One entry for each pair of materials and for each material with `walls`; the "
-                    "native backend needs all."},
+                    "native backend needs all but those between materials of which all stands still "
+                    "(fixed particles, surfaces, `walls`)."},
         contact.pairs);
 }
 
@@ -169,8 +170,8 @@ template <class Visit>
 void describe(Visit& visit, ParticleNumerics& numerics) {
   visit({.name = "precision",
          .meaning = "Of the native engine. `mixed`: positions in double, velocities, forces and "
-                    "springs in float; faster and smaller, at the error that docs/results.md "
-                    "shows."},
+                    "springs in float; faster and smaller. What that costs is measured after the "
+                    "last window and told in the summary and in run.log."},
         numerics.precision);
   visit({.name = "threads",
          .range = not_negative,

@@ -28,6 +28,15 @@ class NormalRun(ProgramTest):
         for words in ("gas in / out", "largest imbalance", "pressure drop", "particles (DEM)", "exchange + audit", str(self.out)):
             self.assertIn(words, stdout)
 
+    def test_tells_at_its_end_what_mixed_precision_has_cost(self):
+        stdout, _ = self.run_scene(small_bed())
+        self.assertNotIn("mixed precision", stdout + self.log())
+        scene = small_bed()
+        scene["particles"].setdefault("numerics", {})["precision"] = "mixed"
+        stdout, _ = self.run_scene(scene)
+        self.assertIn("mixed precision       off double after one more window: velocities ", stdout)
+        self.assertIn("mixed precision against double, one window after the last", self.log())
+
     def test_starts_a_new_log_in_which_every_process_speaks(self):
         for _ in range(2):
             self.run_scene(small_bed())

@@ -341,7 +341,15 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
   const double rebuilds = state.number("rebuilds");
 
   rollback();
-  presented_ = std::move(stored);
+  std::swap(presented_, stored);
+  const Sizes own_sizes = sizes_;
+  try {
+    size_up();
+  } catch (...) {
+    presented_ = std::move(stored);
+    sizes_ = own_sizes;
+    throw;
+  }
   HugeVector<BodyRow>& bodies = bodies_[committed_];
   bodies.resize(rows);
   loads_.assign(rows, LoadRow{});
@@ -364,7 +372,6 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
   rebuilds_ = static_cast<std::int64_t>(rebuilds);
   place_walls(walls_at);
   present(committed_);
-  size_up();
 }
 
 }  // namespace fluxpact

@@ -346,6 +346,16 @@ TEST_F(RefusedState, of_another_scene) {
   expect_contains(said(more_materials, state_.fields()), "materials");
 }
 
+TEST_F(RefusedState, of_particles_too_light_for_the_step) {
+  Life heavy = with_coming_and_going();
+  const auto engine = engine_of(heavy);
+  EngineState state;
+  engine->store(state);
+  for (double& density : heavy.start.density) density *= 100;
+  heavy.scene.particles.time_step = heavy.scene.coupling.window = 1e-4;
+  expect_contains(said(heavy, state.fields()), "particles.time_step");
+}
+
 TEST_F(RefusedState, of_another_engine_or_form) {
   const auto kinematic =
       make_kinematic_engine(life_.scene, make_box(life_.scene.fluid.mesh), life_.start);

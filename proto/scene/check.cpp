@@ -293,7 +293,7 @@ void check_forces(const Scene& scene, Findings& findings) {
   if (!findings.sound(path)) return;
   const InterphaseSettings& interphase = scene.interphase;
   for (const InterphaseForce force : interphase.forces) {
-    if (interphase.voidage == VoidageMap::prescribed &&
+    if (interphase.voidage.map == VoidageMap::prescribed &&
         force != InterphaseForce::pressure_gradient && findings.sound("interphase.voidage")) {
       findings.add(path, fmt::format("`{}` acts on particles, and with `voidage: prescribed` there "
                                      "are none; remove it",

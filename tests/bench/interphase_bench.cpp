@@ -90,7 +90,7 @@ struct Bench {
         gradient(voidage.size(), Vector3(0, 0, -9000)) {
     settings.fluid = {1.2, 1.8e-5};
     settings.gravity = {0, 0, -9.81};
-    settings.law = DragLaw::gidaspow;
+    settings.drag.law = DragLaw::gidaspow;
     settings.threads = options.threads;
   }
 

@@ -69,7 +69,7 @@ ExchangeSettings settings_of(const Combination& c) {
   ExchangeSettings settings;
   settings.fluid = {1000, 1e-3};
   settings.gravity = {0, 0, -9.81};
-  settings.law = DragLaw::gidaspow;
+  settings.drag.law = DragLaw::gidaspow;
   settings.model = c.model;
   settings.pressure_gradient = c.model == PressureModel::a;
   settings.viscous = c.viscous;
@@ -187,7 +187,7 @@ struct Pair {
     settings = settings_of(combinations[3]);
     settings.gravity.setZero();
     settings.buoyancy = false;
-    settings.law = DragLaw::stokes;
+    settings.drag.law = DragLaw::stokes;
     settings.model = PressureModel::a;
     settings.pressure_gradient = false;
     settings.crowding = Crowding::none;

@@ -161,8 +161,8 @@ void describe(Visit& visit, ContactSettings& contact) {
         contact.walls);
   visit({.name = "pairs",
          .meaning = "One entry for each pair of materials and for each material with `walls`; the "
-                    "native backend needs all but those between materials of which all stands still "
-                    "(fixed particles, surfaces, `walls`)."},
+                    "native backend needs all but those between materials of which all stands "
+                    "still (fixed particles, surfaces, `walls`)."},
         contact.pairs);
 }
 

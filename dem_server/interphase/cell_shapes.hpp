@@ -96,6 +96,8 @@ void CellShapes::each_piece(int cell, const Ball& ball, double size, const Use& 
 
 template <class Use>
 void CellShapes::cut_box(const Bounds& box, const Ball& ball, double size, const Use& use) {
+  const Vector3 nearest = ball.centre.cwiseMax(box.lower).cwiseMin(box.upper);
+  if ((nearest - ball.centre).squaredNorm() >= ball.radius * ball.radius) return;
   std::array<double, 3> step{};
   std::array<double, 3> first{};
   std::array<double, 3> last{};

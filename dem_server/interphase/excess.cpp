@@ -12,6 +12,9 @@ namespace {
 // Of a cell's capacity: room, or an excess, below it is rounding.
 constexpr double rounding = 1e-12;
 
+// Far more than an excess needs to find its way.
+constexpr int most_rounds = 1000;
+
 template <class Value>
 void spread_in_turn(const ExcessMoves& moves, std::span<Value> amounts) {
   std::int64_t k = 0;
@@ -94,14 +97,14 @@ double ExcessFinder::move(std::int64_t step, std::span<double> solids, ExcessMov
   if (!find_worst()) return 0;
   const int fullest = worst;
   before_.assign(solids.begin(), solids.end());
-  // Each round fills all cells with room next to an excess, or ends it: no more rounds than cells.
+  // Each round fills all cells with room next to an excess, or ends it.
   for (int round = 0; find_worst(); ++round) {
     const std::size_t turns = moves.from.size();
     find_distances(solids);
     for (auto cell = order_.rbegin(); cell != order_.rend(); ++cell) {
       if (is_over_full(*cell, solids[*cell])) pass_on(*cell, solids, moves);
     }
-    if (moves.from.size() == turns || round > cells) {
+    if (moves.from.size() == turns || round == most_rounds) {
       refuse(fullest, 1 - before_[fullest] / volumes_[fullest], step);
     }
   }

@@ -10,22 +10,13 @@ namespace {
 // Overlaps below this share of R³ are the rounding of a ball that does not touch the cell.
 constexpr double touching = 1e-14;
 
-/// The planes that cut a ball, at most one an axis.
-struct Cuts {
-  int count = 0;
-  std::array<double, 3> distance{};  ///< of the centre [m]
-  std::array<int, 3> beyond{};       ///< what to add to the cell's number
-  int walls = 0;                     ///< bits: nothing is beyond this one
-};
-
 /// Volumes beyond all planes of each set of them; a set is a number of bits.
-std::array<double, 8> beyond_sets(double radius, const Cuts& cuts) {
+std::array<double, 8> beyond_sets(double radius, int count, const std::array<double, 3>& h) {
   std::array<double, 8> beyond{};
   beyond[0] = ball_volume(radius);
-  const auto& h = cuts.distance;
-  for (int i = 0; i < cuts.count; ++i) beyond[1 << i] = cut_ball_volume(radius, -h[i]);
-  if (cuts.count >= 2) beyond[3] = beyond_edge(radius, h[0], h[1]);
-  if (cuts.count == 3) {
+  for (int i = 0; i < count; ++i) beyond[1 << i] = cut_ball_volume(radius, -h[i]);
+  if (count >= 2) beyond[3] = beyond_edge(radius, h[0], h[1]);
+  if (count == 3) {
     beyond[5] = beyond_edge(radius, h[0], h[2]);
     beyond[6] = beyond_edge(radius, h[1], h[2]);
     beyond[7] = beyond_corner(radius, {h[0], h[1], h[2]});
@@ -72,18 +63,16 @@ int LatticeOverlap::cell_of(Vector3 point) const {
   return cell;
 }
 
-bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
+bool LatticeOverlap::find_cuts(const Ball& ball, Cuts& cuts) const {
   const double radius = ball.radius;
   if (!(radius > 0)) return false;
-  Cuts cuts;
-  int cell = 0;
   for (int k = 0; k < 3; ++k) {
     const Axis& axis = axes_[k];
     double x = ball.centre[k];
     const int i = axis.interval(x);
     if (i < 0) return false;
     const int last = static_cast<int>(axis.nodes.size()) - 2;
-    cell += i * axis.stride;
+    cuts.cell += i * axis.stride;
     const double low = x - axis.nodes[i];
     const double high = axis.nodes[i + 1] - x;
     if (std::min(low, high) >= radius) continue;
@@ -104,14 +93,20 @@ bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
     cuts.beyond[cuts.count] = (other - i) * axis.stride;
     ++cuts.count;
   }
+  return true;
+}
 
-  shares.cells[0] = cell;
+bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
+  Cuts cuts;
+  if (!find_cuts(ball, cuts)) return false;
+  const double radius = ball.radius;
+  shares.cells[0] = cuts.cell;
   shares.count = 1;
   if (cuts.count == 0) {
     shares.volumes[0] = shares.total = ball_volume(radius);
     return true;
   }
-  const std::array<double, 8> beyond = beyond_sets(radius, cuts);
+  const std::array<double, 8> beyond = beyond_sets(radius, cuts.count, cuts.distance);
   const int sets = 1 << cuts.count;
   const double smallest = touching * radius * radius * radius;
   shares.total = 0;
@@ -119,7 +114,7 @@ bool LatticeOverlap::find(const Ball& ball, LatticeShares& shares) const {
   for (int set = 0; set < sets; ++set) {
     if ((set & cuts.walls) != 0) continue;
     double volume = 0;  // beyond the planes of this set, and of no other
-    int place = cell;
+    int place = cuts.cell;
     for (int i = 0; i < cuts.count; ++i) place += (set >> i & 1) * cuts.beyond[i];
     for (int more = 0; more < sets; ++more) {
       if ((more & set) != set) continue;

@@ -44,6 +44,17 @@ class LatticeOverlap {
     int interval(double& x) const;
   };
 
+  /// The planes that cut a ball, at most one an axis.
+  struct Cuts {
+    int cell = 0;  ///< that holds the centre
+    int count = 0;
+    std::array<double, 3> distance{};  ///< of the centre [m]
+    std::array<int, 3> beyond{};       ///< what to add to the cell's number
+    int walls = 0;                     ///< bits: nothing is beyond this one
+  };
+
+  bool find_cuts(const Ball& ball, Cuts& cuts) const;
+
   std::array<Axis, 3> axes_;
 };
 

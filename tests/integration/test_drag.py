@@ -53,10 +53,11 @@ class Fluidisation(ProgramTest):
                     "outlet": {"type": "pressure"},
                 },
                 "initial": {"superficial": [0, 0, self.LOW]},
-                "numerics": {"pressure_tolerance": 1e-10},
+                "numerics": {"pressure_tolerance": 1e-10, "threads": 1},
             },
             "particles": {
                 "time_step": 1.25e-5,
+                "numerics": {"threads": 1},
                 "materials": {"glass": {"density": self.SOLID}},
                 "contact": {
                     "pairs": [
@@ -86,7 +87,7 @@ class Fluidisation(ProgramTest):
     def ramp(self, model, end):
         """Of each record: time, superficial velocity, whole pressure drop, that inside the bed over Ergun's. And the voidages at time 0."""
         out = self.folder / model
-        self.run_scene(self.scene(model, end), out=out)
+        self.run_scene(self.scene(model, end), out=out, timeout=500)
         rows = []
         for record in sorted(self.results(out)["fields"].values(), key=lambda each: each.attrs["time"]):
             time = record.attrs["time"]
@@ -145,10 +146,11 @@ def settling_scene(box, cells, periodic, density, viscosity, solid, drag, window
             "viscosity": viscosity,
             "mesh": {"box": {"upper": box, "cells": cells}, "periodic": periodic, "patches": {"top": {"side": "z_max"}}},
             "boundaries": {"top": {"type": "pressure"}, "walls": {"type": "wall"}},
-            "numerics": {"pressure_tolerance": 1e-10},
+            "numerics": {"pressure_tolerance": 1e-10, "threads": 1},
         },
         "particles": {
             "time_step": window / 4,
+            "numerics": {"threads": 1},
             "materials": {"glass": {"density": solid}},
             "contact": {
                 "pairs": [

@@ -212,15 +212,7 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
     points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
                   (u - particles.velocity[i]).norm()};
   }
-  survey_ = drag_coefficients(settings.drag, settings.model, settings.fluid, points_,
-                              settings.threads, offer.coefficient);
-  if (const int bad = survey_.first_bad; bad >= 0) {
-    const Vector3& x = particles.position[bad];
-    throw_bad_drag(
-        settings.drag.law,
-        fmt::format("particle {} at ({}, {}, {}) m", particles.id[bad], x.x(), x.y(), x.z()),
-        points_[bad], offer.coefficient[bad]);
-  }
+  find_drag(settings, particles, offer);
   offer.known.clear();
   offer.eddies.clear();
   lead_.clear();
@@ -243,6 +235,19 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
   }
 }
 
+void OfferMaker::find_drag(const ExchangeSettings& settings, const ParticleState& particles,
+                           Offer& offer) {
+  survey_ = drag_coefficients(settings.drag, settings.model, settings.fluid, points_,
+                              settings.threads, offer.coefficient);
+  const int bad = survey_.first_bad;
+  if (bad < 0) return;
+  const Vector3& x = particles.position[bad];
+  throw_bad_drag(
+      settings.drag.law,
+      fmt::format("particle {} at ({}, {}, {}) m", particles.id[bad], x.x(), x.y(), x.z()),
+      points_[bad], offer.coefficient[bad]);
+}
+
 void OfferMaker::add_further_forces(const ExchangeSettings& settings, const FluidSeen& fluid,
                                     const ParticleState& particles, const ParticleBulk& bulk,
                                     const Prediction& past, Offer& offer) {
@@ -251,8 +256,7 @@ void OfferMaker::add_further_forces(const ExchangeSettings& settings, const Flui
   if (settings.added_mass || settings.turbulent_dispersion) lead_.assign(size, Vector3::Zero());
   if (settings.turbulent_dispersion) {
     meet_eddies(settings, fluid, particles, bulk, past, points_, lead_, offer);
-    drag_coefficients(settings.law, settings.model, settings.fluid, points_, settings.threads,
-                      offer.coefficient);
+    find_drag(settings, particles, offer);
   }
   if (!settings.has_known()) return;
   const bool lifts = settings.saffman_lift || settings.magnus_lift;

@@ -1,4 +1,4 @@
-// Momentum between fluid and particles, exact in both directions and stable for any window.
+// Momentum between fluid and particles, exact in both directions; drag is stable for any window.
 //
 // Partial elimination: at the end of a window each particle i offers the fluid the law
 //   impulse(u) = Δt k (u − v*),   k = ζ/(1 + b),  b = ζ Δt/m,
@@ -171,6 +171,7 @@ class OfferMaker {
   const DragSurvey& survey() const { return survey_; }
 
  private:
+  void find_drag(const ExchangeSettings& settings, const ParticleState& particles, Offer& offer);
   void add_further_forces(const ExchangeSettings& settings, const FluidSeen& fluid,
                           const ParticleState& particles, const ParticleBulk& bulk,
                           const Prediction& past, Offer& offer);

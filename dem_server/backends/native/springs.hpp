@@ -29,8 +29,13 @@ struct Springs {
   void reset(int count, int each) {
     contacts = count;
     rows_each = each;
-    rows.assign(static_cast<std::size_t>(count) * static_cast<std::size_t>(each), {});
-    held.assign(each > 0 ? static_cast<std::size_t>(count) / 8 + 1 : 0, 0);
+    const auto numbers = static_cast<std::size_t>(count) * static_cast<std::size_t>(each);
+    const auto bytes = each > 0 ? static_cast<std::size_t>(count) / 8 + 1 : 0;
+    // Numbers of contacts go up and down: a little room saves many a step upwards.
+    if (numbers > rows.capacity()) rows.reserve(numbers + numbers / 8);
+    if (bytes > held.capacity()) held.reserve(bytes + bytes / 8);
+    rows.assign(numbers, {});
+    held.assign(bytes, 0);
   }
   void hold(int contact) {
     held[contact / 8] = static_cast<std::uint8_t>(held[contact / 8] | 1U << (contact % 8));

@@ -34,6 +34,8 @@ struct Combination {
   PressureModel model = PressureModel::a;
 };
 
+void PrintTo(const Combination& c, std::ostream* out) { *out << c.name; }  // NOLINT: GoogleTest's
+
 constexpr auto pressure = InterphaseForce::pressure_gradient;
 constexpr auto viscous = InterphaseForce::viscous;
 constexpr auto added_mass = InterphaseForce::added_mass;
@@ -166,6 +168,10 @@ struct SuspensionCase {
   double window;    ///< [s]
   int windows;
 };
+
+void PrintTo(const SuspensionCase& c, std::ostream* out) {  // NOLINT: GoogleTest's name
+  *out << "density ratio " << c.ratio << ", " << 1e3 * c.diameter << " mm";
+}
 
 class Suspension : public testing::TestWithParam<SuspensionCase> {};
 

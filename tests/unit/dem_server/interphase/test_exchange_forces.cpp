@@ -51,6 +51,8 @@ struct Combination {
   PressureModel model;
 };
 
+void PrintTo(const Combination& c, std::ostream* out) { *out << c.name; }  // NOLINT: GoogleTest's
+
 const std::vector<Combination> combinations{
     {"drag_alone", false, false, false, false, false, PressureModel::a},
     {"viscous", true, false, false, false, false, PressureModel::a},
@@ -111,7 +113,8 @@ void expect_momentum_exact(const ExchangeSettings& settings, const Mesh& mesh,
   offer.window = window;
   builder.build(particles, 1, offer.weights);
   std::vector<double> voidage(mesh.cell_volumes.size());
-  map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, mesh.cell_centres, 1, 2, voidage);
+  ExcessFinder excess(mesh, 0.2);
+  map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, excess, 1, 2, voidage);
   OfferMaker maker;
   maker.make(settings, before, voidage, particles, bulk, {}, offer);
   std::vector<double> coefficient(voidage.size());
@@ -195,7 +198,8 @@ struct Pair {
 
   void map() {
     WeightsBuilder(mesh, VoidageMap::exact, 1).build(particles, 1, offer.weights);
-    map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, mesh.cell_centres, 1, 1, voidage);
+    ExcessFinder excess(mesh, 0.2);
+    map_voidage(offer.weights, bulk.volume, mesh.cell_volumes, excess, 1, 1, voidage);
   }
   void offer_window(double window, const FluidSeen& fluid) {
     offer.initial = false;

@@ -174,11 +174,11 @@ void SoftSpheres<Real, turning>::save_springs() {
   for (int b = 0; b < list.blocks.count(); ++b) {
     const ContactBlock<Real>& block = list.block[b];
     SavedSprings<Real>& saved = saved_springs_[b];  // its memory is used again
-    saved.inner = block.inner_springs;
-    saved.outer = block.outer_springs;
-    saved.image = block.image_springs;
-    saved.plane = block.plane_springs;
-    saved.surface = block.surfaces.springs;
+    saved.inner.keep(block.inner_springs);
+    saved.outer.keep(block.outer_springs);
+    saved.image.keep(block.image_springs);
+    saved.plane.keep(block.plane_springs);
+    saved.surface.keep(block.surfaces.springs);
     saved.touches = block.surfaces.touches;
   }
 }

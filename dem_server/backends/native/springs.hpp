@@ -31,11 +31,19 @@ struct Springs {
     rows_each = each;
     const auto numbers = static_cast<std::size_t>(count) * static_cast<std::size_t>(each);
     const auto bytes = each > 0 ? static_cast<std::size_t>(count) / 8 + 1 : 0;
-    // Numbers of contacts go up and down: a little room saves many a step upwards.
-    if (numbers > rows.capacity()) rows.reserve(numbers + numbers / 8);
-    if (bytes > held.capacity()) held.reserve(bytes + bytes / 8);
+    make_room(numbers, bytes);
     rows.assign(numbers, {});
     held.assign(bytes, 0);
+  }
+  /// A copy, for later.
+  void keep(const Springs& other) {
+    make_room(other.rows.size(), other.held.size());
+    *this = other;
+  }
+  /// Numbers of contacts go up and down: a little more than needed saves many a step upwards.
+  void make_room(std::size_t numbers, std::size_t bytes) {
+    if (numbers > rows.capacity()) rows.reserve(numbers + numbers / 8 + 64);
+    if (bytes > held.capacity()) held.reserve(bytes + bytes / 8 + 64);
   }
   void hold(int contact) {
     held[contact / 8] = static_cast<std::uint8_t>(held[contact / 8] | 1U << (contact % 8));

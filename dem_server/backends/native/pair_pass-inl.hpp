@@ -127,7 +127,7 @@ struct PairBatch {
 
 /// Many batches go through each step before the next: the chain of operations in one batch is long,
 /// and the processor can only look ahead into another if the steps are short.
-inline constexpr int batches_at_once = 8;
+inline constexpr int batches_at_once = 4;
 
 /// Room for the places, in a list, of the pairs that touch or are within the reach of the law.
 inline constexpr int near_enough = batches_at_once * width;

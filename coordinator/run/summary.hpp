@@ -47,8 +47,8 @@ class Summary {
   };
   std::vector<ScalarExtent> scalars_;  ///< over the run
   std::map<std::string, double> figures_;
-  double beyond_drag_ = 0;             ///< share of the particles, summed over windows
-  double most_beyond_drag_ = 0;        ///< largest share in any window
+  double beyond_drag_ = 0;       ///< share of the particles, summed over windows
+  double most_beyond_drag_ = 0;  ///< largest share in any window
   AuditRow last_;
 };
 

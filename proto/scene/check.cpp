@@ -288,6 +288,22 @@ void check_interphase(const Scene& scene, Findings& findings) {
 }
 
 /// What a force of the fluid on the particles needs of the rest of the scene.
+void check_lubrication(const Scene& scene, Findings& findings) {
+  if (scene.particles.backend != ParticleBackend::native && findings.sound("particles.backend")) {
+    findings.add("interphase.forces",
+                 fmt::format("`lubrication` acts between particles that move, and "
+                             "particles.backend: {} does not know it; remove it, or use `native`",
+                             name_of(scene.particles.backend)));
+  }
+  const LubricationSettings& film = scene.interphase.lubrication;
+  if (is_sound(findings, {"interphase.lubrication.roughness", "interphase.lubrication.reach"}) &&
+      film.reach <= film.roughness) {
+    findings.add("interphase.lubrication.reach",
+                 fmt::format("{} m is not more than the roughness, {} m: the film would never act",
+                             film.reach, film.roughness));
+  }
+}
+
 void check_forces(const Scene& scene, Findings& findings) {
   const std::string path = "interphase.forces";
   if (!findings.sound(path)) return;
@@ -306,6 +322,7 @@ void check_forces(const Scene& scene, Findings& findings) {
                  "`viscous` has no meaning with `model: b`, where the fluid alone bears pressure "
                  "and stress; remove it, or use `model: a`");
   }
+  if (has_force(scene, InterphaseForce::lubrication)) check_lubrication(scene, findings);
   if (!has_force(scene, InterphaseForce::turbulent_dispersion)) return;
   if (scene.fluid.turbulence.model != TurbulenceModel::k_epsilon &&
       findings.sound("fluid.turbulence.model")) {

@@ -237,6 +237,7 @@ inline constexpr auto enum_names<InterphaseForce> = std::to_array<Named<Interpha
     {InterphaseForce::saffman_lift, "saffman_lift"},
     {InterphaseForce::magnus_lift, "magnus_lift"},
     {InterphaseForce::turbulent_dispersion, "turbulent_dispersion"},
+    {InterphaseForce::lubrication, "lubrication"},
 });
 template <>
 inline constexpr auto enum_names<Crowding> = std::to_array<Named<Crowding>>({

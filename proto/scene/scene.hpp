@@ -422,7 +422,8 @@ enum class InterphaseForce {
   added_mass,
   saffman_lift,
   magnus_lift,
-  turbulent_dispersion
+  turbulent_dispersion,
+  lubrication,
 };
 enum class Crowding { none, zuber };
 enum class PressureModel { a, b };
@@ -468,6 +469,12 @@ struct DragExpressionSettings {
   std::array<double, 2> slip{0, 50};      ///< [m/s] where the check tries it
 };
 
+/// The film of fluid between surfaces that come close.
+struct LubricationSettings {
+  double roughness = 0;  ///< [m] the film is not thinner
+  double reach = 0;      ///< [m] gap from which on it acts
+};
+
 struct InterphaseSettings {
   PressureModel model = PressureModel::a;
   VoidageSettings voidage;
@@ -477,6 +484,7 @@ struct InterphaseSettings {
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
   Crowding added_mass_crowding = Crowding::none;
   int dispersion_seed = 1;
+  LubricationSettings lubrication;  ///< forces: [lubrication]
   std::optional<PrescribedSettings> prescribed;
 };
 

@@ -331,6 +331,24 @@ void describe(Visit& visit, DragExpressionSettings& law) {
 }
 
 template <class Visit>
+void describe(Visit& visit, LubricationSettings& lubrication) {
+  visit({.name = "roughness",
+         .dimension = Dimension::length,
+         .range = positive,
+         .required = true,
+         .meaning = "Height of the asperities: the film is never thinner. It decides how long a "
+                    "sub-step may be."},
+        lubrication.roughness);
+  visit({.name = "reach",
+         .dimension = Dimension::length,
+         .range = positive,
+         .required = true,
+         .meaning = "Gap between two surfaces below which the film acts; a tenth of the radius is "
+                    "usual, and the theory holds well below the radius."},
+        lubrication.reach);
+}
+
+template <class Visit>
 void describe(Visit& visit, InterphaseSettings& interphase) {
   visit({.name = "model",
          .meaning = "Where the pressure gradient acts (Gidaspow 1994): `a`: on fluid and "
@@ -364,7 +382,8 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
                     "`pressure_gradient`, buoyancy included; `viscous`: the divergence of the "
                     "fluid's viscous stress (model a); `added_mass`, of liquids; `saffman_lift` in "
                     "shear; `magnus_lift` of spinning spheres; `turbulent_dispersion` by the "
-                    "eddies of `model: k_epsilon`."},
+                    "eddies of `model: k_epsilon`; `lubrication` by the film between surfaces that "
+                    "come close."},
         interphase.forces);
   const auto asked = [&](InterphaseForce force) {
     return std::ranges::find(interphase.forces, force) != interphase.forces.end();
@@ -382,6 +401,12 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
          .meaning = "Of the random eddies of `turbulent_dispersion`: the same seed gives the same "
                     "eddies."},
         interphase.dispersion_seed);
+  visit({.name = "lubrication",
+         .required = true,
+         .applies = asked(InterphaseForce::lubrication),
+         .only_with = "forces: [lubrication]",
+         .meaning = "The film of fluid between surfaces that come close."},
+        interphase.lubrication);
   visit({.name = "prescribed",
          .otherwise = "not set; required with `voidage: prescribed`",
          .meaning = "A solid phase at rest given by a formula, for verification."},

@@ -201,7 +201,7 @@ HWY_INLINE void store_springs(const ContactModel& model,
 /// True if the force depends on the radii apart from the overlap.
 HWY_INLINE bool needs_curvature(const ContactModel& model) {
   return model.law != ContactLaw::linear || model.rolling != RollingLaw::none ||
-         model.cohesion != CohesionLaw::none;
+         model.cohesion != CohesionLaw::none || model.film;
 }
 
 /// Spin and moment of inertia, which only rolling asks for: of the particle, and of its partner.

@@ -139,6 +139,26 @@ HWY_INLINE V attraction(D d, const ContactModel& model, const LawLanes<V>& law,
   return hn::IfThenElseZero(wet, hn::Div(strength, hn::MulAdd(slope, reach, one)));
 }
 
+// ---- lubrication ----
+
+/// The force [N] along the normal with which the film between two spheres resists their approach
+/// and their parting, on the particle: −6π μ R*² (1/h − 1/h_r) v_n, from the gap h_r on, with a
+/// film no thinner than the roughness (the leading term of the theory of lubrication: Brenner,
+/// Chem. Eng. Sci. 16, 1961, 242; O'Neill & Majumdar, Z. angew. Math. Phys. 21, 1970, 180, for
+/// unequal spheres; cut off where asperities touch: Smart & Leighton, Phys. Fluids A 1, 1989, 52).
+/// It ends where the surfaces touch: contacts are softened to be followed, and would dwell in the
+/// film. Motion along the surfaces, whose resistance grows with ln h only, is left to the friction.
+/// The force has no part from far away, which is the drag's.
+template <class D, class V>
+HWY_INLINE V film_force(D d, const LawLanes<V>& law, const TouchLanes<V>& touch,
+                        V normal_velocity) {
+  const V one = hn::Set(d, hn::TFromD<D>{1});
+  const V gap = hn::Max(law.film_thinnest, hn::Neg(touch.overlap));
+  const V closeness = hn::Max(hn::Zero(d), hn::Sub(hn::Div(one, gap), law.film_closeness));
+  const V area = hn::Div(law.film_viscosity, hn::Mul(touch.inverse_radius, touch.inverse_radius));
+  return hn::Neg(hn::Mul(hn::Mul(area, closeness), normal_velocity));
+}
+
 // ---- the contact ----
 
 /// Force, lever and rolling torque of a contact in each lane of `near`; all zero, and the springs
@@ -175,6 +195,11 @@ HWY_INLINE void contact_force(D d, const ContactModel& model, const LawLanes<V>&
   if (model.cohesion == CohesionLaw::sjkr || model.cohesion == CohesionLaw::liquid_bridge) {
     const V pull = attraction(d, model, law, touch, near, contact, spring.bridge);
     along = hn::Sub(hn::IfThenElseZero(contact, normal_force), pull);
+    acts = near;
+  }
+  if (model.film) {
+    const V film = film_force(d, law, touch, normal_velocity);
+    along = hn::Add(hn::IfThenElseZero(acts, along), hn::IfThenZeroElse(contact, film));
     acts = near;
   }
   out.force = or_zero(acts, scaled(touch.normal, along));

@@ -39,6 +39,7 @@ struct LawLanes {
   V normal, tangential, tangential_softness, damping, tangential_damping, friction;
   V rolling_friction, rolling_stiffness, rolling_damping;
   V attraction, bridge_shape, bridge_rupture;
+  V film_viscosity, film_thinnest, film_closeness;
 };
 
 /// What a contact remembers (spring_rows); parts that the model does not have are neither read
@@ -65,7 +66,8 @@ struct ForceLanes {
 template <class D, class Load>
 HWY_INLINE LawLanes<hn::Vec<D>> load_columns(D d, const ContactModel& model, const Load& load) {
   const auto zero = hn::Zero(d);
-  LawLanes<hn::Vec<D>> law{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+  LawLanes<hn::Vec<D>> law{zero, zero, zero, zero, zero, zero, zero, zero,
+                           zero, zero, zero, zero, zero, zero, zero};
   law.normal = load(LawColumn::normal);
   law.damping = load(LawColumn::damping);
   if (model.friction) {
@@ -83,6 +85,11 @@ HWY_INLINE LawLanes<hn::Vec<D>> load_columns(D d, const ContactModel& model, con
     law.attraction = load(LawColumn::attraction);
     law.bridge_shape = load(LawColumn::bridge_shape);
     law.bridge_rupture = load(LawColumn::bridge_rupture);
+  }
+  if (model.film) {
+    law.film_viscosity = load(LawColumn::film_viscosity);
+    law.film_thinnest = load(LawColumn::film_thinnest);
+    law.film_closeness = load(LawColumn::film_closeness);
   }
   return law;
 }

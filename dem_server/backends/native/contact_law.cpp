@@ -163,7 +163,7 @@ int spring_rows(const ContactModel& model) {
   return model.friction || outlasts_touch(model.cohesion) ? 1 : 0;
 }
 
-ContactLaws::ContactLaws(const ParticleSettings& settings) {
+ContactLaws::ContactLaws(const ParticleSettings& settings, const std::optional<Film>& film) {
   const ContactSettings& contact = settings.contact;
   for (const auto& [name, material] : settings.materials) names_.push_back(name);
   names_.emplace_back("walls");
@@ -171,7 +171,8 @@ ContactLaws::ContactLaws(const ParticleSettings& settings) {
   if (contact.cohesion == CohesionLaw::jkr && contact.law != ContactLaw::hertz) {
     throw ConfigError("particles.contact.cohesion: jkr needs particles.contact.law: hertz");
   }
-  model_ = {contact.law, contact.rolling, contact.cohesion, contact.rolling != RollingLaw::none};
+  model_ = {contact.law, contact.rolling, contact.cohesion, film.has_value(),
+            contact.rolling != RollingLaw::none};
   const std::vector<Elasticity> elastic = elasticities(settings);
   for (const Elasticity& one : elastic) {
     rayleigh_factors_.push_back(pi / std::sqrt(shear_modulus(one)) /
@@ -202,6 +203,11 @@ ContactLaws::ContactLaws(const ParticleSettings& settings) {
     }
     set_rolling(check, contact.rolling, law);
     set_cohesion(check, contact.cohesion, law);
+    if (film) {
+      law[LawColumn::film_viscosity] = 6 * pi * film->viscosity;
+      law[LawColumn::film_thinnest] = film->roughness;
+      law[LawColumn::film_closeness] = 1 / film->reach;
+    }
     model_.friction = model_.friction || law[LawColumn::friction] > 0;
     laws_[index(a, b)] = laws_[index(b, a)] = law;
   }
@@ -222,6 +228,9 @@ double reach_beyond_contact(const ContactLaws& laws, double largest_radius) {
   for (int pair = 0; pair < laws.count(); ++pair) {
     const PairLaw& law = laws[pair];
     reach = std::max(reach, law[LawColumn::bridge_rupture]);
+    if (laws.model().film && law.given) {
+      reach = std::max(reach, 1 / law[LawColumn::film_closeness]);
+    }
     if (laws.model().cohesion == CohesionLaw::jkr) {
       // 3 a_c²/R*, which grows with R*; that of a contact with a wall is the radius.
       const double factor = law[LawColumn::attraction];

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct ContactModel {
   ContactLaw law = ContactLaw::linear;
   RollingLaw rolling = RollingLaw::none;
   CohesionLaw cohesion = CohesionLaw::none;
+  bool film = false;      ///< the fluid between surfaces that come close resists (lubrication)
   bool friction = false;  ///< some pair has friction or the scene a rolling law: spins are followed
 };
 
@@ -40,8 +42,18 @@ enum class LawColumn {
                ///< jkr: (π w / 8 E*)^(1/3) [m^(1/3)]
   bridge_shape,    ///< liquid_bridge: 2 / V [1/m³]
   bridge_rupture,  ///< liquid_bridge: distance of the surfaces at which it breaks [m]; 0: dry
+  film_viscosity,  ///< lubrication: 6 π μ [Pa s]
+  film_thinnest,   ///< lubrication: roughness [m]
+  film_closeness,  ///< lubrication: 1/reach [1/m]
 };
-inline constexpr int law_columns = static_cast<int>(LawColumn::bridge_rupture) + 1;
+inline constexpr int law_columns = static_cast<int>(LawColumn::film_closeness) + 1;
+
+/// The fluid between surfaces that come close (lubrication).
+struct Film {
+  double viscosity = 0;  ///< μ [Pa s]
+  double roughness = 0;  ///< [m]
+  double reach = 0;      ///< [m]
+};
 
 /// One pair of materials.
 struct PairLaw {
@@ -67,7 +79,7 @@ class ContactLaws {
  public:
   /// Throws ConfigError for a pair that names an unknown material, stands twice, has a value
   /// outside its range, or lacks one that the laws of the scene need.
-  explicit ContactLaws(const ParticleSettings& settings);
+  explicit ContactLaws(const ParticleSettings& settings, const std::optional<Film>& film = {});
 
   const ContactModel& model() const { return model_; }
   int walls() const { return static_cast<int>(names_.size()) - 1; }  ///< the walls' material index
@@ -89,7 +101,7 @@ class ContactLaws {
 };
 
 /// How far [m] beyond touching surfaces a contact acts: what a list of neighbours adds to its
-/// cutoff, for particles up to `largest_radius` [m]. 0 without liquid bridges and jkr.
+/// cutoff, for particles up to `largest_radius` [m]. 0 without liquid bridges, jkr and films.
 double reach_beyond_contact(const ContactLaws& laws, double largest_radius);
 
 /// All pairs as one table of plain numbers, T = float or double: column by column, in a column the

@@ -8,7 +8,12 @@ namespace {
 template <class Real>
 std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh,
                                             ParticleState initial) {
-  ContactLaws laws(scene.particles);
+  const LubricationSettings& lubrication = scene.interphase.lubrication;
+  std::optional<Film> film;
+  if (has_force(scene, InterphaseForce::lubrication)) {
+    film = Film{scene.fluid.viscosity, lubrication.roughness, lubrication.reach};
+  }
+  ContactLaws laws(scene.particles, film);
   if (laws.any_friction()) {
     return std::make_unique<SoftSpheres<Real, true>>(scene, mesh, std::move(laws),
                                                      std::move(initial));

@@ -14,6 +14,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double share_of_contact_time = 0.1;
 constexpr double share_of_rayleigh_time = 0.2;
+// A sphere between ten others still feels less than the 2 at which an explicit dashpot goes astray.
+constexpr double share_of_film_time = 0.2;
 
 /// The particles of one material, either the free or the fixed ones.
 struct Present {
@@ -82,6 +84,19 @@ StepLimit limit_of(const Meeting& meeting, const ContactModel& model) {
                       meeting.speed, contact)};
 }
 
+/// Of the film at its thinnest: m*/c. The lightest sphere beside one that is far larger has twice
+/// the c/m* of two of its kind; a wall is such a one.
+StepLimit film_limit(const Meeting& meeting, bool wall) {
+  const PairLaw& law = meeting.law;
+  const double closeness = 1 / law[LawColumn::film_thinnest] - law[LawColumn::film_closeness];
+  const double resistance =
+      law[LawColumn::film_viscosity] * meeting.radius * meeting.radius * closeness;
+  const double time = meeting.mass / (resistance * (wall ? 1 : 2));
+  return {share_of_film_time * time,
+          fmt::format("a fifth of the time in which the film of lubrication stops {}, {:.4g} s",
+                      meeting.name, time)};
+}
+
 void check_meeting(const Meeting& meeting, const ContactModel& model) {
   if (!meeting.law.given) {
     const char* const needs = model.law == ContactLaw::linear
@@ -141,19 +156,20 @@ StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
   const int materials = laws.walls();
   const int groups = 2 * materials;
   std::vector<bool> meets(groups, false);
-  const auto meet = [&](const Meeting& meeting) {
+  const auto meet = [&](const Meeting& meeting, bool wall) {
     check_meeting(meeting, laws.model());
     consider(limit_of(meeting, laws.model()));
+    if (laws.model().film) consider(film_limit(meeting, wall));
   };
   for (int a = 0; a < materials; ++a) {
     if (present[a].count == 0) continue;
     for (const WallsPresent& wall : walls) {
-      meet(meeting_with_wall(laws, present[a], a, wall));
+      meet(meeting_with_wall(laws, present[a], a, wall), true);
       meets[a] = true;
     }
     for (int b = groups - 1; b >= a; --b) {
       if (present[b].count <= (a == b ? 1 : 0)) continue;
-      meet(meeting_of(laws, present, a, b));
+      meet(meeting_of(laws, present, a, b), false);
       meets[a] = meets[b] = true;
     }
   }

@@ -187,6 +187,21 @@ TEST(SceneChecks, forces_fit_the_rest_of_the_scene) {
                "s.yaml:12:3: interphase.forces: `added_mass` acts on particles", {"remove it"});
 }
 
+TEST(SceneChecks, lubrication_has_a_film_and_an_engine_that_knows_it) {
+  const auto film = [](const std::string& section) {
+    return replaced(with_forces("lubrication"), "drag: wen_yu", "drag: wen_yu\n  " + section);
+  };
+  const std::string good = film("lubrication: {roughness: 1 um, reach: 0.1 mm}");
+  EXPECT_EQ(errors_in(good), "");
+  expect_error(with_forces("lubrication"), "s.yaml:49:1: interphase.lubrication: missing", {});
+  expect_error(
+      film("lubrication: {roughness: 1 mm, reach: 0.1 mm}"),
+      "s.yaml:52:41: interphase.lubrication.reach: 0.0001 m is not more than the roughness", {});
+  EXPECT_NE(errors_in(good, {"particles.backend=kinematic", "particles.contact={}"})
+                .find("`lubrication` acts between particles that move"),
+            std::string::npos);
+}
+
 TEST(SceneChecks, keys_of_a_force_have_no_meaning_without_it) {
   EXPECT_EQ(errors_in(with_forces("added_mass")), "");
   EXPECT_EQ(errors_in(replaced(with_forces("added_mass"), "drag: wen_yu",

@@ -125,9 +125,6 @@ struct PairBatch {
   ForceLanes<V> out;
 };
 
-// The steps are functions of their own, called once a batch: the second is the same for all kinds
-// of pairs, and one function with all of it in it takes compilers minutes.
-
 /// Many batches go through each step before the next: the chain of operations in one batch is long,
 /// and the processor can only look ahead into another if the steps are short.
 inline constexpr int batches_at_once = 4;
@@ -194,7 +191,8 @@ HWY_INLINE int sift(const BlockPass<Real, turning>& pass, const Pair* const* pai
 
 /// First step: how the partners stand and move to each other.
 template <class Real, bool turning, Kind kind>
-HWY_NOINLINE void approach(const BlockPass<Real, turning>& pass, PairBatch<Real, turning>& batch) {
+FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass,
+                                    PairBatch<Real, turning>& batch) {
   const ContactModel& model = pass.laws->model;
   Partners<Real, turning> partners;
   find_partners<Real, turning, kind>(pass, batch.pairs, partners);
@@ -221,7 +219,8 @@ HWY_NOINLINE void approach(const BlockPass<Real, turning>& pass, PairBatch<Real,
 
 /// Second step: springs and forces.
 template <class Real, bool turning>
-HWY_NOINLINE void respond(const BlockPass<Real, turning>& pass, PairBatch<Real, turning>& batch) {
+FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass,
+                                   PairBatch<Real, turning>& batch) {
   const Lanes<Real> d;
   const ContactModel& model = pass.laws->model;
   auto spring = load_springs<Real>(model, batch.springs);
@@ -239,8 +238,8 @@ HWY_NOINLINE void respond(const BlockPass<Real, turning>& pass, PairBatch<Real, 
 
 /// Third step: to the sums of the particles.
 template <class Real, bool turning, Kind kind>
-HWY_NOINLINE void hand_over(const BlockPass<Real, turning>& pass,
-                            const PairBatch<Real, turning>& batch) {
+FLUXPACT_CONTACT_STEP void hand_over(const BlockPass<Real, turning>& pass,
+                                     const PairBatch<Real, turning>& batch) {
   const Pair* const* pairs = batch.pairs;
   const auto holder = [&](int k) { return pairs[k]->mine; };
   const auto partner = [&](int k) { return pairs[k]->other; };

@@ -14,10 +14,11 @@ namespace fluxpact::HWY_NAMESPACE {
 /// A batch of contacts with walls, one a lane, whose normals, overlaps and wall velocities are
 /// known: forces on the particles `place` (in the block).
 template <class Real, bool turning, class Contact>
-HWY_NOINLINE void pass_walls(const BlockPass<Real, turning>& pass,
-                             TouchLanes<hn::Vec<Lanes<Real>>>& touch,
-                             const Lanes3<hn::Vec<Lanes<Real>>>& wall_velocity,
-                             const Contact* contacts, int count, int at, Springs<Real>& springs) {
+FLUXPACT_CONTACT_STEP void pass_walls(const BlockPass<Real, turning>& pass,
+                                      TouchLanes<hn::Vec<Lanes<Real>>>& touch,
+                                      const Lanes3<hn::Vec<Lanes<Real>>>& wall_velocity,
+                                      const Contact* contacts, int count, int at,
+                                      Springs<Real>& springs) {
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
   const ContactModel& model = pass.laws->model;

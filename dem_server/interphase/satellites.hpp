@@ -12,7 +12,7 @@ namespace fluxpact {
 /// "The unreasonable effectiveness of quasirandom sequences"), and are then stretched so that from
 /// six points on their second moments are those of the ball, 1/5 in each direction: what they
 /// integrate of a polynomial of third order is exact. No two of them pass a plane face of a box at
-/// once, as points of cubic symmetry do. A few may lie up to 5 % outside of the ball.
+/// once, as points of cubic symmetry do. A few may lie up to 6 % outside of the ball.
 std::vector<Vector3> satellite_points(int count);
 
 }  // namespace fluxpact

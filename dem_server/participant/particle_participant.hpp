@@ -37,7 +37,8 @@ class ParticleParticipant : public Participant {
   /// Needs velocity and pressure_gradient of the committed fluid state, one row a cell, and what
   /// the scene's forces ask for (asked_fields.hpp). Throws ProtocolError if they are missing or the
   /// last candidate was neither committed nor rolled back, NumericsError if a particle leaves the
-  /// mesh, a cell is over-full, a force is not finite.
+  /// mesh, nothing has room
+  /// for what over-full cells hold, a force is not finite.
   void advance(const Window& window, const Fields& in, Fields& out,
                const Progress& progress) override;
   void commit() override;

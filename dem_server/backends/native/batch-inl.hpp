@@ -75,7 +75,7 @@ HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart) {
   return gap;
 }
 
-/// The law of each lane, by the index that index(lane) gives.
+/// The law of each lane, by index_of(lane).
 template <class Real, class IndexOf>
 HWY_INLINE LawLanes<hn::Vec<Lanes<Real>>> law_of(const LawTable<Real>& table,
                                                  const IndexOf& index_of) {
@@ -105,9 +105,13 @@ class StoredRows {
  public:
   HWY_INLINE explicit StoredRows(const ForceLanes<hn::Vec<Lanes<Real>>>& from) {
     const Lanes<Real> d;
-    store_rows<numbers>(d, from.force.x, from.force.y, from.force.z, &row_[0][0]);
+    const auto zero = hn::Zero(d);
+    using Rows = Quad<hn::Vec<Lanes<Real>>>;
+    scatter_rows(d, Rows{from.force.x, from.force.y, from.force.z, zero}, width,
+                 [&](int k) { return row_[k]; });
     if constexpr (turning) {
-      store_rows<numbers>(d, from.lever.x, from.lever.y, from.lever.z, &row_[0][4]);
+      scatter_rows(d, Rows{from.lever.x, from.lever.y, from.lever.z, zero}, width,
+                   [&](int k) { return row_[k] + 4; });
     }
   }
   /// To the places of all lanes, one after the other.

@@ -257,38 +257,6 @@ HWY_INLINE Quad<V> gather_rows(D d, const RowOf& row) {
           hn::LoadU(d, lanes[3])};
 }
 
-/// Components to rows: rows[stride k ... stride k + 2] of lane k; the fourth number of each is 0.
-template <int stride, class D, class T = hn::TFromD<D>, class V = hn::Vec<D>>
-HWY_INLINE void store_rows(D d, V x, V y, V z, T* HWY_RESTRICT rows) {
-#if HWY_MAX_BYTES >= 32
-  if constexpr (holds_rows<D>) {
-    const Quad<V> t = transpose(d, Quad<V>{x, y, z, hn::Zero(d)});
-    const auto put = [&](V v, int k) {
-      if constexpr (lanes_of<D> == 8) {
-        const hn::Half<D> half;
-        hn::Store(hn::LowerHalf(half, v), half, rows + stride * k);
-        hn::Store(hn::UpperHalf(half, v), half, rows + stride * (k + 4));
-      } else {
-        hn::Store(v, d, rows + stride * k);
-      }
-    };
-    put(t.a, 0);
-    put(t.b, 1);
-    put(t.c, 2);
-    put(t.d, 3);
-    return;
-  }
-#endif
-  T lanes[3][lanes_of<D>];
-  hn::StoreU(x, d, lanes[0]);
-  hn::StoreU(y, d, lanes[1]);
-  hn::StoreU(z, d, lanes[2]);
-  for (int lane = 0; lane < lanes_of<D>; ++lane) {
-    for (int c = 0; c < 3; ++c) rows[stride * lane + c] = lanes[c][lane];
-    rows[stride * lane + 3] = 0;
-  }
-}
-
 /// Components to the rows at the addresses row(lane), of the first `count` lanes only.
 template <class D, class RowOf, class T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE void scatter_rows(D d, const Quad<V>& components, int count, const RowOf& row) {

@@ -52,6 +52,7 @@ struct Meeting {
   double mass;    ///< m* of the lightest [kg]
   double radius;  ///< R* of the smallest [m]
   double widest;  ///< R* of the largest [m]
+  double uneven;  ///< R* of the smallest of one beside the largest of the other [m]
   double speed;   ///< [m/s]
 };
 
@@ -84,14 +85,13 @@ StepLimit limit_of(const Meeting& meeting, const ContactModel& model) {
                       meeting.speed, contact)};
 }
 
-/// Of the film at its thinnest: m*/c. The lightest sphere beside one that is far larger has twice
-/// the c/m* of two of its kind; a wall is such a one.
-StepLimit film_limit(const Meeting& meeting, bool wall) {
+/// Of the film at its thinnest: m*/c, c = 6π μ R*² (1/roughness − 1/reach).
+StepLimit film_limit(const Meeting& meeting) {
   const PairLaw& law = meeting.law;
   const double closeness = 1 / law[LawColumn::film_thinnest] - law[LawColumn::film_closeness];
   const double resistance =
-      law[LawColumn::film_viscosity] * meeting.radius * meeting.radius * closeness;
-  const double time = meeting.mass / (resistance * (wall ? 1 : 2));
+      law[LawColumn::film_viscosity] * meeting.uneven * meeting.uneven * closeness;
+  const double time = meeting.mass / resistance;
   return {share_of_film_time * time,
           fmt::format("a fifth of the time in which the film of lubrication stops {}, {:.4g} s",
                       meeting.name, time)};
@@ -128,6 +128,7 @@ Meeting meeting_with_wall(const ContactLaws& laws, const Present& one, int a,
           one.lightest,
           one.smallest,
           one.largest,
+          one.smallest,
           one.fastest + wall.speed};
 }
 
@@ -141,6 +142,7 @@ Meeting meeting_of(const ContactLaws& laws, const std::vector<Present>& present,
           in_series(one.lightest, other.lightest),
           in_series(one.smallest, other.smallest),
           in_series(one.largest, other.largest),
+          std::max(in_series(one.smallest, other.largest), in_series(one.largest, other.smallest)),
           one.fastest + other.fastest};
 }
 
@@ -156,20 +158,20 @@ StepLimit step_limit(const ContactLaws& laws, const ParticleState& particles,
   const int materials = laws.walls();
   const int groups = 2 * materials;
   std::vector<bool> meets(groups, false);
-  const auto meet = [&](const Meeting& meeting, bool wall) {
+  const auto meet = [&](const Meeting& meeting) {
     check_meeting(meeting, laws.model());
     consider(limit_of(meeting, laws.model()));
-    if (laws.model().film) consider(film_limit(meeting, wall));
+    if (laws.model().film) consider(film_limit(meeting));
   };
   for (int a = 0; a < materials; ++a) {
     if (present[a].count == 0) continue;
     for (const WallsPresent& wall : walls) {
-      meet(meeting_with_wall(laws, present[a], a, wall), true);
+      meet(meeting_with_wall(laws, present[a], a, wall));
       meets[a] = true;
     }
     for (int b = groups - 1; b >= a; --b) {
       if (present[b].count <= (a == b ? 1 : 0)) continue;
-      meet(meeting_of(laws, present, a, b), false);
+      meet(meeting_of(laws, present, a, b));
       meets[a] = meets[b] = true;
     }
   }

@@ -1,4 +1,5 @@
 // Forces between the phases in coupled runs: momentum, stability of suspensions in liquids, drift.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "dem_server/interphase/drag.hpp"
 #include "dem_server/interphase/overlap.hpp"
 #include "dem_server/participant/particle_participant.hpp"
+#include "proto/scene/names.hpp"
 #include "tests/unit/dem_server/participant/free_flight.hpp"
 #include "tests/verification/coupled/coupled_run.hpp"
 
@@ -43,10 +45,10 @@ constexpr auto saffman = InterphaseForce::saffman_lift;
 constexpr auto magnus = InterphaseForce::magnus_lift;
 constexpr auto dispersion = InterphaseForce::turbulent_dispersion;
 
-class CoupledForces : public testing::TestWithParam<std::tuple<VoidageMap, Combination>> {};
+class CoupledForces : public testing::TestWithParam<std::tuple<VoidageSettings, Combination>> {};
 
 /// 80 spheres that move and spin in a periodic box of liquid, which shears.
-Scene stirred_box(VoidageMap map, const Combination& combination) {
+Scene stirred_box(const VoidageSettings& map, const Combination& combination) {
   Scene scene;
   scene.scene.gravity = {0, 0, -9.81};
   scene.coupling.window = 2e-3;
@@ -102,23 +104,46 @@ TEST_P(CoupledForces, hand_over_momentum_to_the_last_digits_in_every_window) {
   }
 }
 
+const Combination only_drag{"drag", {}};
+const Combination all_forces{"all", {pressure, viscous, added_mass, saffman, magnus, dispersion}};
+
+/// Maps that go on from cell to cell, by diffusion or out of cells that hold too much.
+VoidageSettings diffusion() {
+  VoidageSettings settings(VoidageMap::diffusion);
+  settings.width = 0.03;
+  return settings;
+}
+VoidageSettings over_full() {
+  VoidageSettings settings(VoidageMap::exact);
+  settings.smallest = 0.97;  // two spheres or more in a cell; the mean voidage is 0.99
+  return settings;
+}
+
+std::string name_of_case(const testing::TestParamInfo<CoupledForces::ParamType>& test) {
+  const auto& [map, combination] = test.param;
+  const bool full = map.smallest > VoidageSettings().smallest;
+  return fmt::format("{}_{}", full ? "over_full" : name_of(map.map), combination.name);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Everywhere, CoupledForces,
     testing::Combine(
         testing::Values(VoidageMap::exact, VoidageMap::centroid),
-        testing::Values(Combination{"drag", {}}, Combination{"pressure", {pressure}},
+        testing::Values(only_drag, Combination{"pressure", {pressure}},
                         Combination{"viscous", {pressure, viscous}},
                         Combination{"added_mass", {pressure, added_mass}},
                         Combination{"added_mass_alone", {added_mass}},
                         Combination{"added_mass_b", {pressure, added_mass}, PressureModel::b},
                         Combination{"lifts", {pressure, saffman, magnus}},
-                        Combination{"dispersion", {pressure, dispersion}},
-                        Combination{"all",
-                                    {pressure, viscous, added_mass, saffman, magnus, dispersion}})),
-    [](const auto& test) {
-      return std::string(std::get<0>(test.param) == VoidageMap::exact ? "exact_" : "centroid_") +
-             std::get<1>(test.param).name;
-    });
+                        Combination{"dispersion", {pressure, dispersion}}, all_forces)),
+    name_of_case);
+
+INSTANTIATE_TEST_SUITE_P(OtherMaps, CoupledForces,
+                         testing::Combine(testing::Values(VoidageSettings(VoidageMap::satellite),
+                                                          VoidageSettings(VoidageMap::kernel),
+                                                          diffusion(), over_full()),
+                                          testing::Values(only_drag, all_forces)),
+                         name_of_case);
 
 // ---- suspensions in liquids ----
 

@@ -9,8 +9,7 @@
 
 #include "boxes.hpp"
 #include "dem_server/interphase/satellites.hpp"
-#include "dem_server/interphase/voidage.hpp"
-#include "proto/base/compensated_sum.hpp"
+#include "mapped.hpp"
 #include "proto/scene/names.hpp"
 #include "tests/unit/cfd_server/test_meshes.hpp"
 
@@ -26,50 +25,6 @@ void add_ball(ParticleState& particles, const Vector3& position, double radius) 
   particles.density.push_back(2500);
   particles.material.push_back(0);
 }
-
-struct Mapped {
-  Mapped(const Mesh& mesh_, const VoidageSettings& settings, int threads = 1)
-      : mesh(mesh_),
-        builder(mesh_, settings, threads),
-        excess(mesh_, settings.smallest),
-        voidage(mesh_.cell_volumes.size()) {}
-
-  void map(const ParticleState& particles, int threads = 1) {
-    builder.build(particles, 3, weights);
-    particle_volumes(particles, volumes);
-    moved = map_voidage(weights, volumes, mesh.cell_volumes, excess, 3, threads, voidage);
-  }
-  /// (Σ (1−ε) V − Σ V_p)/Σ V_p.
-  double volume_error() const {
-    CompensatedSum sum;
-    CompensatedSum solids;
-    for (std::size_t c = 0; c < voidage.size(); ++c) {
-      sum.add((1 - voidage[c]) * mesh.cell_volumes[c]);
-    }
-    for (const double volume : volumes) {
-      sum.add(-volume);
-      solids.add(volume);
-    }
-    return sum.value() / solids.value();
-  }
-  std::vector<double> deposited(std::span<const double> of_particles) const {
-    std::vector<double> cells(voidage.size());
-    for (int c = 0; c < mesh.cells(); ++c) {
-      weights.deposit(
-          c, [&](double part) { cells[c] += part; }, [&](int p) { return of_particles[p]; });
-    }
-    weights.spread(std::span<double>(cells));
-    return cells;
-  }
-
-  const Mesh& mesh;
-  WeightsBuilder builder;
-  ExcessFinder excess;
-  ParticleCellWeights weights;
-  std::vector<double> volumes;
-  std::vector<double> voidage;
-  double moved = 0;
-};
 
 VoidageSettings settings_of(VoidageMap map, double width = 0) {
   VoidageSettings settings(map);

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "boxes.hpp"
-#include "dem_server/interphase/voidage.hpp"
-#include "proto/base/compensated_sum.hpp"
+#include "mapped.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {
@@ -39,41 +38,6 @@ ParticleState cloud(int count, double low, double high, double radius, unsigned 
   }
   return particles;
 }
-
-struct Mapped {
-  Mapped(const Mesh& mesh_, const VoidageSettings& settings, int threads = 1)
-      : mesh(mesh_),
-        builder(mesh_, settings, threads),
-        excess(mesh_, settings.smallest),
-        voidage(mesh_.cell_volumes.size()) {}
-
-  void map(const ParticleState& particles) {
-    builder.build(particles, 7, weights);
-    particle_volumes(particles, volumes);
-    moved = map_voidage(weights, volumes, mesh.cell_volumes, excess, 7, 1, voidage);
-  }
-  /// (Σ (1−ε) V − Σ V_p)/Σ V_p.
-  double volume_error() const {
-    CompensatedSum sum;
-    CompensatedSum solids;
-    for (std::size_t c = 0; c < voidage.size(); ++c) {
-      sum.add((1 - voidage[c]) * mesh.cell_volumes[c]);
-    }
-    for (const double volume : volumes) {
-      sum.add(-volume);
-      solids.add(volume);
-    }
-    return sum.value() / solids.value();
-  }
-
-  const Mesh& mesh;
-  WeightsBuilder builder;
-  ExcessFinder excess;
-  double moved = 0;
-  ParticleCellWeights weights;
-  std::vector<double> volumes;
-  std::vector<double> voidage;
-};
 
 // Particles fill some per cent of the meshes here: rounding 1 − ε costs about 1e-16/0.03 of them.
 constexpr double volume_tolerance = 1e-13;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_server/backends/native/step_limit.hpp"
 #include "proto/base/errors.hpp"
 #include "tests/unit/dem_server/native/spheres_in_a_box.hpp"
 
@@ -118,6 +119,19 @@ TEST(Film, bounds_the_time_step) {
   EXPECT_NO_THROW(engine->advance(0.2 * stop, 1, none, {}));
   expect_contains(message_of<ConfigError>([&] { engine->advance(0.21 * stop, 1, none, {}); }),
                   "a fifth of the time in which the film of lubrication stops [glass, walls]");
+}
+
+TEST(Film, bounds_the_time_step_beside_a_large_fixed_sphere) {
+  const Scene scene = film_scene();
+  const ContactLaws laws(scene.particles, Film{viscosity, roughness, reach});
+  ParticleState state;
+  add_sphere(state, {0.002, 0.002, 0.002}, Vector3::Zero(), r);
+  add_sphere(state, {0.02, 0.02, 0.02}, Vector3::Zero(), 9 * r);
+  state.fixed = {0, 1};
+  const double effective = 0.9 * r;
+  const double stop = mass / (6 * std::numbers::pi * viscosity * effective * effective *
+                              (1 / roughness - 1 / reach));
+  EXPECT_NEAR(step_limit(laws, state, {}).longest, 0.2 * stop, 1e-12 * stop);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The state of an engine, stored in a file and taken back: as if nothing had been in between.
-#include <cstring>
+#include <algorithm>
+#include <span>
 
 #include "dem_server/backends/engine_state.hpp"
 #include "dem_server/backends/kinematic/kinematic_engine.hpp"
@@ -66,10 +67,10 @@ void expect_same_state(const ParticleEngine& a, const ParticleEngine& b) {
     const FieldView& y = right.views()[k];
     ASSERT_EQ(x.name, y.name);
     ASSERT_EQ(x.values.size(), y.values.size()) << x.name;
-    EXPECT_EQ(0, std::memcmp(x.values.data(), y.values.data(), x.values.size_bytes())) << x.name;
+    EXPECT_TRUE(std::ranges::equal(std::as_bytes(x.values), std::as_bytes(y.values))) << x.name;
   }
-  const auto same = [](const std::vector<Vector3>& x, const std::vector<Vector3>& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), 24 * x.size()) == 0;
+  const auto same = [](std::span<const Vector3> x, std::span<const Vector3> y) {
+    return std::ranges::equal(std::as_bytes(x), std::as_bytes(y));
   };
   EXPECT_TRUE(same(a.particles().position, b.particles().position));
   EXPECT_TRUE(same(a.particles().velocity, b.particles().velocity));

@@ -311,6 +311,26 @@ TEST(Kernel, is_the_same_in_cells_of_any_kind_as_the_meshes_get_finer) {
   EXPECT_NEAR(below(hexahedra({.cells = {4, 4, 4}})), lattice, 0.01);  // larger than the bell
 }
 
+TEST(Centroid, keeps_rows_and_columns_when_the_number_of_particles_changes) {
+  const Mesh mesh = mesh_named("box");
+  Mapped mapped(mesh, settings_of(VoidageMap::centroid));
+  for (const int count : {3, 5, 5, 2, 0, 4}) {
+    ParticleState particles;
+    for (int i = 0; i < count; ++i) add_ball(particles, {0.19 * i + 0.1, 0.3, 0.6}, 0.02);
+    mapped.map(particles);
+    ASSERT_EQ(mapped.weights.particles(), count);
+    EXPECT_EQ(mapped.weights.row_weights, std::vector<double>(particles.id.size(), 1.0));
+    EXPECT_EQ(mapped.weights.cell_weights, mapped.weights.row_weights);
+    EXPECT_EQ(mapped.weights.cell_particles.size(), particles.id.size());
+    for (int i = 0; i < count; ++i) {
+      ASSERT_EQ(mapped.weights.row_offsets[i + 1], i + 1);
+      const Vector3& centre = mesh.cell_centres[mapped.weights.row_cells[i]];
+      EXPECT_LE((particles.position[i] - centre).cwiseAbs().maxCoeff(), 0.5 * edge);
+    }
+    EXPECT_LE(std::abs(count == 0 ? 0.0 : mapped.volume_error()), 1e-12);
+  }
+}
+
 /// What a box has of the bell of radius h: by midpoints of equal pieces no larger than h/2.
 double bell_in_box(const std::array<std::array<double, 2>, 3>& box, const Vector3& centre,
                    double h) {

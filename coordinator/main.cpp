@@ -27,6 +27,7 @@ void check_scene(const RunOptions& options) {
              options.scene.string(), mesh.cells(), windows(scene), scene.coupling.window,
              sub_steps(scene));
   fmt::print("{}{}", particle_report(scene, mesh), mesh_report(scene, mesh));
+  for (const std::string& text : particle_warnings(scene)) fmt::print("  warning: {}\n", text);
   for (const std::string& line : surfaces) fmt::print("{}\n", line);
 }
 

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "proto/scene/names.hpp"
 #include "proto/scene/size_law.hpp"
 
 namespace fluxpact {
 namespace {
+
+// Added mass is ρ/(2 ρ_p) of a sphere's own: 5 % of it at this ratio of the densities.
+constexpr double light = 10;
 
 struct Box {
   Vector3 lower, upper;  // [m]
@@ -106,6 +110,33 @@ std::string particle_report(const Scene& scene, const Mesh& mesh) {
                         inflow_text(scene, inflow, density));
   }
   return text;
+}
+
+std::vector<std::string> particle_warnings(const Scene& scene) {
+  const ParticleSettings& particles = scene.particles;
+  double least = std::numeric_limits<double>::infinity();  // [kg/m³]
+  std::string of;
+  const auto meet = [&](const std::string& material) {
+    const double density = particles.materials.at(material).density;
+    if (density >= least) return;
+    least = density;
+    of = material;
+  };
+  for (const InsertionSettings& entry : particles.insertion) {
+    if (entry.motion == Mobility::free) meet(entry.material);
+  }
+  for (const InflowSettings& inflow : particles.inflow) meet(inflow.material);
+  const double ratio = least / scene.fluid.density;
+  const bool known = has_force(scene, InterphaseForce::added_mass);
+  if (particles.backend != ParticleBackend::native || known || ratio >= light) return {};
+  return {fmt::format(
+      "interphase.forces does not have 'added_mass', but particles of '{}' are only {:.3g} times "
+      "as "
+      "dense as the fluid: in an accelerating flow they bear {:.0f} % more than their own mass, "
+      "and "
+      "without it dense suspensions (above 1/4 of the volume) can be unstable; add it to "
+      "interphase.forces",
+      of, ratio, 50 / ratio)};
 }
 
 }  // namespace fluxpact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "proto/mesh/mesh.hpp"
 #include "proto/scene/scene.hpp"
@@ -12,5 +13,10 @@ namespace fluxpact {
 /// the scene gives them; what only packing, settling or reading can tell is said to be so. Empty
 /// without particles.
 std::string particle_report(const Scene& scene, const Mesh& mesh);
+
+/// What the scene leaves out although its numbers ask for it, one text for each: added mass where
+/// the particles are less than ten times as dense as the fluid. `check` prints them, a run logs
+/// them.
+std::vector<std::string> particle_warnings(const Scene& scene);
 
 }  // namespace fluxpact

@@ -16,6 +16,9 @@ namespace {
 
 const Vector3 no_vector = Vector3::Zero();
 
+// Whose offers are made one after the other: all that is read and written of them stays in cache.
+constexpr int rows_at_once = 1024;
+
 // The share of the load that contacts carried in the window just ended.
 double carried_share(const Vector3& load, const Vector3& acceleration) {
   const double load_squared = load.squaredNorm();
@@ -34,18 +37,19 @@ Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const
                  int i) {
   const Vector3& velocity = particles.velocity[i];
   if (!settings.mobile || particles.is_fixed(i)) return {velocity, 0};
+  const double per_density = 1 / particles.density[i];
+  const double per_mass = 1 / bulk.mass[i];
   Vector3 coming = settings.gravity;
-  if (settings.pressure_gradient) coming -= gradient / particles.density[i];
-  if (settings.buoyancy) {
-    coming -= settings.fluid.density * settings.gravity / particles.density[i];
-  }
-  if (!offer.known.empty()) coming += offer.known[i] / bulk.mass[i];
+  if (settings.pressure_gradient) coming -= per_density * gradient;
+  if (settings.buoyancy) coming -= settings.fluid.density * per_density * settings.gravity;
+  if (!offer.known.empty()) coming += per_mass * offer.known[i];
   const int before = past.row_before.empty() ? i : past.row_before[i];
   if (!(past.length > 0) || before < 0) return {velocity + offer.window * coming, 1};
-  const Vector3 load = settings.gravity + past.forces->force[before] / bulk.mass[i];
+  const double per_length = 1 / past.length;
+  const Vector3 load = settings.gravity + per_mass * past.forces->force[before];
   const Vector3 change = velocity - past.velocity_before[before];
-  const double carried = carried_share(load, change / past.length);
-  const Vector3 drag = past.forces->drag_impulse[before] / (bulk.mass[i] * past.length);
+  const double carried = carried_share(load, per_length * change);
+  const Vector3 drag = per_mass * per_length * past.forces->drag_impulse[before];
   return {velocity + offer.window * ((1 - carried) * coming - carried * drag), 1 - carried};
 }
 
@@ -63,15 +67,13 @@ Vector3 known_force(const ExchangeSettings& settings, const FluidSeen& fluid,
   return force;
 }
 
-/// Moves every particle's walk through the eddies over the window, and gives the drag law their
-/// velocity. `points`, `offer.coefficient`: those of the mean flow.
+/// Moves the walk of the particles of `rows` through the eddies over the window, and gives the drag
+/// law their velocity. `points`, `offer.coefficient`: those of the mean flow.
 void meet_eddies(const ExchangeSettings& settings, const FluidSeen& fluid,
                  const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
-                 std::span<DragPoint> points, std::span<Vector3> fluctuation, Offer& offer) {
-  const int count = particles.size();
-  offer.eddies.resize(static_cast<std::size_t>(count));
-#pragma omp parallel for schedule(static) num_threads(settings.threads)
-  for (int i = 0; i < count; ++i) {
+                 const OfferMaker::Rows& rows, std::span<DragPoint> points,
+                 std::span<Vector3> fluctuation, Offer& offer) {
+  for (int i = rows.first; i < rows.last; ++i) {
     const int before = past.row_before.empty() ? i : past.row_before[i];
     const bool known = before >= 0 && before < static_cast<int>(past.eddies.size());
     Eddy eddy = known ? past.eddies[before] : Eddy{};
@@ -160,12 +162,12 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
   for (auto* array : {&forces.drag_impulse, &forces.impulse, &forces.force}) {
     array->resize(static_cast<std::size_t>(count));
   }
+  const double per_length = 1 / length;
   int bad = count;  // the first one, for any number of threads
 #pragma omp parallel for schedule(static) num_threads(settings.threads) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
     Vector3 drag = Vector3::Zero();
     Vector3 pressure = Vector3::Zero();
-    Vector3 known = Vector3::Zero();
     if (fluid.solved) {
       const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
       drag = offer.window * offer.coefficient[i] * (u - offer.velocity[i]);
@@ -174,19 +176,19 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
         pressure = -bulk.volume[i] * gradient;
         if (!offer.returned.empty()) drag += offer.window * offer.returned[i] * gradient;
       }
-      if (!offer.known.empty()) known = offer.window * offer.known[i];
     }
+    Vector3 impulse = drag + length * pressure;
+    Vector3 force = per_length * drag + pressure;
+    if (fluid.solved && !offer.known.empty()) {
+      const Vector3 known = offer.window * offer.known[i];
+      impulse += known;
+      force += per_length * known;
+    }
+    if (settings.buoyancy) force -= settings.fluid.density * bulk.volume[i] * settings.gravity;
     forces.drag_impulse[i] = drag;
-    forces.impulse[i] = drag + length * pressure;
-    forces.force[i] = drag / length + pressure;
-    if (!offer.known.empty()) {
-      forces.impulse[i] += known;
-      forces.force[i] += known / length;
-    }
-    if (settings.buoyancy) {
-      forces.force[i] -= settings.fluid.density * bulk.volume[i] * settings.gravity;
-    }
-    if (!forces.force[i].allFinite()) bad = std::min(bad, i);
+    forces.impulse[i] = impulse;
+    forces.force[i] = force;
+    if (!force.allFinite()) bad = std::min(bad, i);
   }
   if (bad < count) {
     const Vector3& x = particles.position[bad];
@@ -203,44 +205,40 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
                       const ParticleBulk& bulk, const Prediction& past, Offer& offer) {
   const int count = particles.size();
   const auto size = static_cast<std::size_t>(count);
+  const bool further = !offer.initial;
   points_.resize(size);
   offer.coefficient.resize(size);
   offer.velocity.resize(size);
-#pragma omp parallel for schedule(static) num_threads(settings.threads)
-  for (int i = 0; i < count; ++i) {
-    const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
-    points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
-                  (u - particles.velocity[i]).norm()};
-  }
-  find_drag(settings, particles, offer);
-  offer.known.clear();
-  offer.eddies.clear();
-  lead_.clear();
-  if (!offer.initial) add_further_forces(settings, fluid, particles, bulk, past, offer);
-  if (settings.pressure_returns) offer.returned.assign(size, 0.0);
-#pragma omp parallel for schedule(static) num_threads(settings.threads)
-  for (int i = 0; i < count; ++i) {
-    const bool last_gradient = fluid.solved && !settings.pressure_returns;
-    const Vector3 gradient =
-        last_gradient ? offer.weights.gather(i, fluid.pressure_gradient, no_vector) : no_vector;
-    const Foreseen coming = foresee(settings, past, offer, gradient, particles, bulk, i);
-    offer.velocity[i] = coming.velocity;
-    if (settings.mobile && !particles.is_fixed(i)) {
-      offer.coefficient[i] /= 1 + offer.coefficient[i] * offer.window / bulk.mass[i];
+  offer.known.resize(further && settings.has_known() ? size : 0);
+  offer.eddies.resize(further && settings.turbulent_dispersion ? size : 0);
+  lead_.resize(further && (settings.added_mass || settings.turbulent_dispersion) ? size : 0);
+  offer.returned.resize(settings.pressure_returns ? size : 0);
+  std::int64_t outside = 0;
+  int bad = count;  // the first one, for any number of threads
+#pragma omp parallel for schedule(static) num_threads(settings.threads) reduction(+ : outside) \
+    reduction(min : bad)
+  for (int first = 0; first < count; first += rows_at_once) {
+    const Rows rows{first, std::min(first + rows_at_once, count)};
+    for (int i = rows.first; i < rows.last; ++i) {
+      const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
+      points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
+                    (u - particles.velocity[i]).norm()};
     }
-    if (settings.pressure_returns && !offer.initial) {
-      offer.returned[i] = offer.coefficient[i] * coming.free * offer.window / particles.density[i];
+    DragSurvey survey = find_drag(settings, rows, offer);
+    if (survey.first_bad < 0 && !offer.eddies.empty()) {
+      meet_eddies(settings, fluid, particles, bulk, past, rows, points_, lead_, offer);
+      survey = find_drag(settings, rows, offer);
     }
-    if (!lead_.empty()) offer.velocity[i] -= lead_[i];
+    outside += survey.outside;
+    if (survey.first_bad >= 0) {
+      bad = std::min(bad, survey.first_bad);
+      continue;
+    }
+    if (!offer.known.empty()) add_known(settings, fluid, particles, bulk, rows, offer);
+    eliminate(settings, fluid, particles, bulk, past, rows, offer);
   }
-}
-
-void OfferMaker::find_drag(const ExchangeSettings& settings, const ParticleState& particles,
-                           Offer& offer) {
-  survey_ = drag_coefficients(settings.drag, settings.model, settings.fluid, points_,
-                              settings.threads, offer.coefficient);
-  const int bad = survey_.first_bad;
-  if (bad < 0) return;
+  survey_ = {outside, bad < count ? bad : -1};
+  if (bad == count) return;
   const Vector3& x = particles.position[bad];
   throw_bad_drag(
       settings.drag.law,
@@ -248,21 +246,23 @@ void OfferMaker::find_drag(const ExchangeSettings& settings, const ParticleState
       points_[bad], offer.coefficient[bad]);
 }
 
-void OfferMaker::add_further_forces(const ExchangeSettings& settings, const FluidSeen& fluid,
-                                    const ParticleState& particles, const ParticleBulk& bulk,
-                                    const Prediction& past, Offer& offer) {
-  const int count = particles.size();
-  const auto size = points_.size();
-  if (settings.added_mass || settings.turbulent_dispersion) lead_.assign(size, Vector3::Zero());
-  if (settings.turbulent_dispersion) {
-    meet_eddies(settings, fluid, particles, bulk, past, points_, lead_, offer);
-    find_drag(settings, particles, offer);
-  }
-  if (!settings.has_known()) return;
+/// ζ of the rows. Their numbers are those of all particles in the survey, too.
+DragSurvey OfferMaker::find_drag(const ExchangeSettings& settings, const Rows& rows, Offer& offer) {
+  const auto first = static_cast<std::size_t>(rows.first);
+  const auto size = static_cast<std::size_t>(rows.last - rows.first);
+  DragSurvey survey = drag_coefficients(settings.drag, settings.model, settings.fluid,
+                                        std::span(points_).subspan(first, size), 1,
+                                        std::span(offer.coefficient).subspan(first, size));
+  if (survey.first_bad >= 0) survey.first_bad += rows.first;
+  return survey;
+}
+
+/// Added mass joins ζ; E.
+void OfferMaker::add_known(const ExchangeSettings& settings, const FluidSeen& fluid,
+                           const ParticleState& particles, const ParticleBulk& bulk,
+                           const Rows& rows, Offer& offer) {
   const bool lifts = settings.saffman_lift || settings.magnus_lift;
-  offer.known.resize(size);
-#pragma omp parallel for schedule(static) num_threads(settings.threads)
-  for (int i = 0; i < count; ++i) {
+  for (int i = rows.first; i < rows.last; ++i) {
     LiftPoint lift;
     lift.diameter = points_[i].diameter;
     lift.slip = offer.weights.gather(i, fluid.velocity, no_vector) - particles.velocity[i];
@@ -275,10 +275,34 @@ void OfferMaker::add_further_forces(const ExchangeSettings& settings, const Flui
       added = added_mass_coefficient(settings.crowding, points_[i].voidage) *
               settings.fluid.density * bulk.volume[i];
       const double whole = offer.coefficient[i] + added / offer.window;
-      lead_[i] = (offer.coefficient[i] * lead_[i] - added / offer.window * lift.slip) / whole;
+      const Vector3 eddy = offer.eddies.empty() ? no_vector : lead_[i];
+      lead_[i] = (offer.coefficient[i] * eddy - added / offer.window * lift.slip) / whole;
       offer.coefficient[i] = whole;
     }
     offer.known[i] = known_force(settings, fluid, offer.weights, lift, bulk.volume[i], added, i);
+  }
+}
+
+/// ζ -> k, v* and what returns.
+void OfferMaker::eliminate(const ExchangeSettings& settings, const FluidSeen& fluid,
+                           const ParticleState& particles, const ParticleBulk& bulk,
+                           const Prediction& past, const Rows& rows, Offer& offer) const {
+  const bool last_gradient =
+      settings.pressure_gradient && fluid.solved && !settings.pressure_returns;
+  for (int i = rows.first; i < rows.last; ++i) {
+    const Vector3 gradient =
+        last_gradient ? offer.weights.gather(i, fluid.pressure_gradient, no_vector) : no_vector;
+    const Foreseen coming = foresee(settings, past, offer, gradient, particles, bulk, i);
+    offer.velocity[i] = coming.velocity;
+    if (settings.mobile && !particles.is_fixed(i)) {
+      offer.coefficient[i] /= 1 + offer.coefficient[i] * offer.window / bulk.mass[i];
+    }
+    if (settings.pressure_returns) {
+      offer.returned[i] =
+          offer.initial ? 0.0
+                        : offer.coefficient[i] * coming.free * offer.window / particles.density[i];
+    }
+    if (!lead_.empty()) offer.velocity[i] -= lead_[i];
   }
 }
 
@@ -288,14 +312,11 @@ void deposit_offer(const Offer& offer, int threads, std::span<double> drag_coeff
   for (int cell = 0; cell < offer.weights.cells(); ++cell) {
     double coefficient = 0;
     Vector3 source = Vector3::Zero();
-    offer.weights.deposit(
-        cell, [&](double share) { coefficient += share; },
-        [&](int particle) { return offer.coefficient[particle]; });
-    offer.weights.deposit(
-        cell, [&](const Vector3& share) { source += share; },
-        [&](int particle) -> Vector3 {
-          return offer.coefficient[particle] * offer.velocity[particle];
-        });
+    offer.weights.each_in(cell, [&](int particle, double weight) {
+      const double share = weight * offer.coefficient[particle];
+      coefficient += share;
+      source += share * offer.velocity[particle];
+    });
     if (!offer.known.empty()) {
       offer.weights.deposit(
           cell, [&](const Vector3& share) { source -= share; },

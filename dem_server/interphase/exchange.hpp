@@ -163,6 +163,12 @@ struct Prediction {
 /// finite.
 class OfferMaker {
  public:
+  /// first .. last − 1 of the particles.
+  struct Rows {
+    int first = 0;
+    int last = 0;
+  };
+
   void make(const ExchangeSettings& settings, const FluidSeen& fluid,
             std::span<const double> voidage, const ParticleState& particles,
             const ParticleBulk& bulk, const Prediction& past, Offer& offer);
@@ -171,10 +177,13 @@ class OfferMaker {
   const DragSurvey& survey() const { return survey_; }
 
  private:
-  void find_drag(const ExchangeSettings& settings, const ParticleState& particles, Offer& offer);
-  void add_further_forces(const ExchangeSettings& settings, const FluidSeen& fluid,
-                          const ParticleState& particles, const ParticleBulk& bulk,
-                          const Prediction& past, Offer& offer);
+  DragSurvey find_drag(const ExchangeSettings& settings, const Rows& rows, Offer& offer);
+  void add_known(const ExchangeSettings& settings, const FluidSeen& fluid,
+                 const ParticleState& particles, const ParticleBulk& bulk, const Rows& rows,
+                 Offer& offer);
+  void eliminate(const ExchangeSettings& settings, const FluidSeen& fluid,
+                 const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
+                 const Rows& rows, Offer& offer) const;
 
   std::vector<DragPoint> points_;
   DragSurvey survey_;

@@ -26,52 +26,14 @@ std::array<double, 8> beyond_sets(double radius, int count, const std::array<dou
 
 }  // namespace
 
-LatticeOverlap::LatticeOverlap(const Lattice& lattice) {
-  int stride = 1;
-  for (int k = 0; k < 3; ++k) {
-    const auto& nodes = lattice.nodes[k];
-    const int intervals = static_cast<int>(nodes.size()) - 1;
-    axes_[k] = {nodes,        nodes.front(),
-                nodes.back(), intervals / (nodes.back() - nodes.front()),
-                stride,       lattice.periodic[k]};
-    stride *= intervals;
-  }
-}
-
-// -1 outside. The guess is right for equal cells; from there it is a short walk.
-int LatticeOverlap::Axis::interval(double& x) const {
-  if (!(x >= front && x < back)) {
-    if (!periodic || !std::isfinite(x)) return -1;
-    const double period = back - front;
-    x -= period * std::floor((x - front) / period);
-    if (!(x < back)) return -1;  // rounded up to the other end
-  }
-  const int last = static_cast<int>(nodes.size()) - 2;
-  int i = std::min(static_cast<int>((x - front) * per_length), last);
-  while (i < last && x >= nodes[i + 1]) ++i;
-  while (i > 0 && x < nodes[i]) --i;
-  return i;
-}
-
-int LatticeOverlap::cell_of(Vector3 point) const {
-  int cell = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int i = axes_[k].interval(point[k]);
-    if (i < 0) return -1;
-    cell += i * axes_[k].stride;
-  }
-  return cell;
-}
-
 bool LatticeOverlap::find_cuts(const Ball& ball, Cuts& cuts) const {
   const double radius = ball.radius;
   if (!(radius > 0)) return false;
   for (int k = 0; k < 3; ++k) {
-    const Axis& axis = axes_[k];
+    const LatticeAxis& axis = axes_[k];
     double x = ball.centre[k];
     const int i = axis.interval(x);
     if (i < 0) return false;
-    const int last = static_cast<int>(axis.nodes.size()) - 2;
     cuts.cell += i * axis.stride;
     const double low = x - axis.nodes[i];
     const double high = axis.nodes[i + 1] - x;
@@ -79,12 +41,12 @@ bool LatticeOverlap::find_cuts(const Ball& ball, Cuts& cuts) const {
     if (std::max(low, high) < radius) return false;
     const bool below = low < high;
     int other = below ? i - 1 : i + 1;
-    if (other < 0 || other > last) {
+    if (other < 0 || other > axis.last) {
       if (!axis.periodic) {
         cuts.walls |= 1 << cuts.count;
         other = i;
       } else {
-        other = below ? last : 0;
+        other = below ? axis.last : 0;
       }
     }
     const double distance = below ? low : high;

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "dem_server/interphase/lattice_axis.hpp"
 #include "dem_server/interphase/overlap.hpp"
 #include "proto/mesh/mesh.hpp"
 
@@ -22,28 +22,24 @@ struct LatticeShares {
 
 class LatticeOverlap {
  public:
-  explicit LatticeOverlap(const Lattice& lattice);
+  explicit LatticeOverlap(const Lattice& lattice) : axes_(lattice_axes(lattice)) {}
 
   /// The cell that holds a point [m]; -1 if none does, or it lies in the last plane of an axis.
-  int cell_of(Vector3 point) const;
+  int cell_of(Vector3 point) const {
+    int cell = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int i = axes_[k].interval(point[k]);
+      if (i < 0) return -1;
+      cell += i * axes_[k].stride;
+    }
+    return cell;
+  }
 
   /// False if the ball is cut by two planes of one axis, its centre is outside, or its radius is
   /// not positive: nothing is said of it then.
   bool find(const Ball& ball, LatticeShares& shares) const;
 
  private:
-  /// Its intervals.
-  struct Axis {
-    std::vector<double> nodes;   ///< [m]
-    double front = 0, back = 0;  ///< [m]
-    double per_length = 0;       ///< intervals over the whole length [1/m]
-    int stride = 1;              ///< of the cell's number
-    bool periodic = false;
-
-    /// Of x, which is brought into the period.
-    int interval(double& x) const;
-  };
-
   /// The planes that cut a ball, at most one an axis.
   struct Cuts {
     int cell = 0;  ///< that holds the centre
@@ -55,7 +51,7 @@ class LatticeOverlap {
 
   bool find_cuts(const Ball& ball, Cuts& cuts) const;
 
-  std::array<Axis, 3> axes_;
+  std::array<LatticeAxis, 3> axes_;
 };
 
 }  // namespace fluxpact

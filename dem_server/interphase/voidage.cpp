@@ -40,12 +40,11 @@ void map_velocity(const ParticleCellWeights& weights, std::span<const double> pa
   for (int cell = 0; cell < weights.cells(); ++cell) {
     double volume = 0;
     Vector3 moment = Vector3::Zero();
-    for (auto k = weights.cell_offsets[cell]; k < weights.cell_offsets[cell + 1]; ++k) {
-      const int particle = weights.cell_particles[k];
-      const double share = weights.cell_weights[k] * particle_volume[particle];
+    weights.each_in(cell, [&](int particle, double weight) {
+      const double share = weight * particle_volume[particle];
       volume += share;
       moment += share * particle_velocity[particle];
-    }
+    });
     volumes[cell] = volume;
     velocity[cell] = moment;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "dem_server/interphase/satellites.hpp"
 #include "proto/base/errors.hpp"
@@ -42,13 +43,51 @@ WeightsBuilder::WeightsBuilder(const Mesh& mesh, const VoidageSettings& settings
   }
   if (map_ == VoidageMap::satellite) points_ = satellite_points(settings.points);
   if (shapes_.lattice()) lattice_.emplace(*shapes_.lattice());
+  if (lattice_ && map_ == VoidageMap::kernel) lattice_bell_.emplace(*shapes_.lattice());
   rows_.resize(static_cast<std::size_t>(threads));
+}
+
+void WeightsBuilder::build(const ParticleState& particles, std::int64_t step,
+                           ParticleCellWeights& weights) {
+  weights.diffusion = diffusion_ ? &*diffusion_ : nullptr;
+  weights.excess.clear();
+  if (map_ == VoidageMap::centroid) {
+    build_whole(particles, step, weights);
+  } else {
+    build_rows(particles, step, weights);
+  }
+  transpose(weights);
+}
+
+/// What is the same in every window, offsets and ones, is written when their number changes.
+void WeightsBuilder::build_whole(const ParticleState& particles, std::int64_t step,
+                                 ParticleCellWeights& weights) const {
+  const int count = particles.size();
+  const auto size = static_cast<std::size_t>(count);
+  if (!weights.whole || weights.row_cells.size() != size) {
+    weights.whole = true;
+    weights.row_offsets.resize(size + 1);
+    std::iota(weights.row_offsets.begin(), weights.row_offsets.end(), 0);
+    weights.row_cells.resize(size);
+    weights.row_weights.assign(size, 1.0);
+    weights.cell_weights.assign(size, 1.0);
+  }
+  const double period = locator_.shortest_period();
+  int bad = count;
+#pragma omp parallel for schedule(static) num_threads(threads_) reduction(min : bad)
+  for (int p = 0; p < count; ++p) {
+    const int home = cell_of(particles.position[p]);
+    weights.row_cells[p] = home;
+    if (home < 0 || !(particles.radius[p] < period)) bad = std::min(bad, p);
+  }
+  if (bad < count) refuse(particles, bad, step);
 }
 
 // Each thread fills the rows of one run of particles; joined in the order of the particles, the
 // result does not know how many threads there were.
-void WeightsBuilder::build(const ParticleState& particles, std::int64_t step,
-                           ParticleCellWeights& weights) {
+void WeightsBuilder::build_rows(const ParticleState& particles, std::int64_t step,
+                                ParticleCellWeights& weights) {
+  weights.whole = false;
   const int count = particles.size();
   weights.row_offsets.resize(static_cast<std::size_t>(count) + 1);
   weights.row_offsets[0] = 0;
@@ -70,10 +109,7 @@ void WeightsBuilder::build(const ParticleState& particles, std::int64_t step,
   for (const Row& row : rows_) {
     if (row.bad_particle >= 0) refuse(particles, row.bad_particle, step);
   }
-  weights.diffusion = diffusion_ ? &*diffusion_ : nullptr;
-  weights.excess.clear();
   join_rows(particles, weights);
-  transpose(weights);
 }
 
 int WeightsBuilder::cell_of(const Vector3& point) const {
@@ -107,9 +143,7 @@ bool WeightsBuilder::append_row(const Ball& ball, Row& row) const {
     case VoidageMap::kernel:
       return append_bell(home, ball, row);
     default:
-      row.cells.push_back(home);
-      row.weights.push_back(1.0);
-      return true;
+      return false;  // `build_whole` has no rows
   }
 }
 
@@ -172,26 +206,35 @@ bool WeightsBuilder::append_bell(int home, const Ball& ball, Row& row) const {
     row.weights.push_back(1.0);
     return true;
   }
-  row.images.clear();
-  locator_.touching({ball.centre, radius}, row.images);
   const std::size_t first = row.cells.size();
-  const double per_square = 1 / (radius * radius);
-  double sum = 0;
-  for (const CellImage& image : row.images) {
-    double weight = 0;
-    const Ball bell{image.point, radius};
-    shapes_.each_piece(image.cell, bell, 0.5 * radius, [&](const Vector3& point, double volume) {
-      const double height = std::max(0.0, 1 - (point - image.point).squaredNorm() * per_square);
-      weight += volume * height * height * height;
-    });
-    if (!(weight > 0)) continue;
-    row.cells.push_back(image.cell);
-    row.weights.push_back(weight);
-    sum += weight;
+  if (!lattice_bell_ ||
+      !lattice_bell_->append({ball.centre, radius}, row.bell, row.cells, row.weights)) {
+    integrate_bell({ball.centre, radius}, row);
   }
+  double sum = 0;
+  for (std::size_t k = first; k < row.weights.size(); ++k) sum += row.weights[k];
   if (!(sum > 0) || !std::isfinite(sum)) return false;
   for (std::size_t k = first; k < row.weights.size(); ++k) row.weights[k] /= sum;
   return true;
+}
+
+/// On any mesh.
+void WeightsBuilder::integrate_bell(const Ball& ball, Row& row) const {
+  row.images.clear();
+  locator_.touching(ball, row.images);
+  const double per_square = 1 / (ball.radius * ball.radius);
+  for (const CellImage& image : row.images) {
+    double weight = 0;
+    const Ball bell{image.point, ball.radius};
+    shapes_.each_piece(
+        image.cell, bell, 0.5 * ball.radius, [&](const Vector3& point, double volume) {
+          const double height = std::max(0.0, 1 - (point - image.point).squaredNorm() * per_square);
+          weight += volume * height * height * height;
+        });
+    if (!(weight > 0)) continue;
+    row.cells.push_back(image.cell);
+    row.weights.push_back(weight);
+  }
 }
 
 void WeightsBuilder::join_rows(const ParticleState& particles, ParticleCellWeights& weights) {
@@ -221,12 +264,18 @@ void WeightsBuilder::transpose(ParticleCellWeights& weights) {
   const auto cells = static_cast<std::size_t>(shapes_.cells());
   weights.cell_offsets.assign(cells + 1, 0);
   weights.cell_particles.resize(weights.row_cells.size());
-  weights.cell_weights.resize(weights.row_cells.size());
   for (const int cell : weights.row_cells) ++weights.cell_offsets[cell + 1];
   for (std::size_t cell = 0; cell < cells; ++cell) {
     weights.cell_offsets[cell + 1] += weights.cell_offsets[cell];
   }
   next_.assign(weights.cell_offsets.begin(), weights.cell_offsets.end() - 1);
+  if (weights.whole) {
+    for (int p = 0; p < weights.particles(); ++p) {
+      weights.cell_particles[next_[weights.row_cells[p]]++] = p;
+    }
+    return;
+  }
+  weights.cell_weights.resize(weights.row_cells.size());
   for (int p = 0; p < weights.particles(); ++p) {
     for (auto k = weights.row_offsets[p]; k < weights.row_offsets[p + 1]; ++k) {
       const auto place = next_[weights.row_cells[k]]++;

@@ -16,6 +16,7 @@
 #include "dem_server/interphase/cell_locator.hpp"
 #include "dem_server/interphase/diffusion.hpp"
 #include "dem_server/interphase/excess.hpp"
+#include "dem_server/interphase/lattice_bell.hpp"
 #include "dem_server/interphase/lattice_shares.hpp"
 #include "proto/scene/scene.hpp"
 
@@ -30,6 +31,7 @@ struct ParticleCellWeights {
   std::vector<std::int64_t> cell_offsets;  ///< cells + 1
   std::vector<int> cell_particles;
   std::vector<double> cell_weights;  ///< [-]
+  bool whole = false;  ///< every particle is in one cell, with the weight 1: no need to read them
 
   const CellDiffusion* diffusion = nullptr;  ///< none: what is deposited stays there
   ExcessMoves excess;                        ///< then; `map_voidage` fills it
@@ -59,18 +61,28 @@ struct ParticleCellWeights {
   /// Σ_c w f_c for one particle: what it sees of a field of the cells.
   template <class Value>
   Value gather(int particle, std::span<const Value> cell_values, Value sum) const {
+    if (whole) return sum + cell_values[row_cells[particle]];
     for (auto k = row_offsets[particle]; k < row_offsets[particle + 1]; ++k) {
       sum += row_weights[k] * cell_values[row_cells[k]];
     }
     return sum;
   }
 
+  /// Calls use(particle, w) for all particles of one cell, in their order.
+  template <class Use>
+  void each_in(int cell, Use&& use) const {
+    const auto last = cell_offsets[cell + 1];
+    if (whole) {
+      for (auto k = cell_offsets[cell]; k < last; ++k) use(cell_particles[k], 1.0);
+    } else {
+      for (auto k = cell_offsets[cell]; k < last; ++k) use(cell_particles[k], cell_weights[k]);
+    }
+  }
+
   /// Σ_p w f(p) for one cell, always in the order of the particles; the adjoint of `gather`.
   template <class Sum, class ParticleValue>
   void deposit(int cell, Sum&& add, ParticleValue&& value) const {
-    for (auto k = cell_offsets[cell]; k < cell_offsets[cell + 1]; ++k) {
-      add(cell_weights[k] * value(cell_particles[k]));
-    }
+    each_in(cell, [&](int particle, double weight) { add(weight * value(particle)); });
   }
 };
 
@@ -96,15 +108,20 @@ class WeightsBuilder {
   struct Row {
     std::vector<CellImage> images;
     LatticeShares shares;
+    BellRoom bell;
     std::vector<int> cells;  ///< of all rows of one thread, one after the other
     std::vector<double> weights;
     int bad_particle = -1;
   };
 
+  void build_rows(const ParticleState& particles, std::int64_t step, ParticleCellWeights& weights);
+  void build_whole(const ParticleState& particles, std::int64_t step,
+                   ParticleCellWeights& weights) const;
   bool append_row(const Ball& ball, Row& row) const;
   bool append_exact(int home, const Ball& ball, Row& row) const;
   bool append_points(int home, const Ball& ball, Row& row) const;
   bool append_bell(int home, const Ball& ball, Row& row) const;
+  void integrate_bell(const Ball& ball, Row& row) const;
   double reach(double radius) const;
   int cell_of(const Vector3& point) const;
   void join_rows(const ParticleState& particles, ParticleCellWeights& weights);
@@ -117,6 +134,7 @@ class WeightsBuilder {
   double half_width_ = 0;  ///< [m] of the bell; 0: from the diameter
   int threads_;
   std::optional<LatticeOverlap> lattice_;
+  std::optional<LatticeBell> lattice_bell_;
   std::optional<CellDiffusion> diffusion_;
   std::vector<Vector3> points_;  ///< of the unit ball
   std::vector<Row> rows_;        ///< one for each thread, reused

@@ -241,8 +241,9 @@ void describe(Visit& visit, VoidageSettings& voidage) {
   visit({.name = "map",
          .meaning = "`exact`: overlap of sphere and cell; `centroid`: all volume to one cell, "
                     "jumps; `satellite`: equal parts at fixed points of the sphere, small jumps; "
-                    "`kernel`: a smooth bell around the sphere; `diffusion`: spread from cell to "
-                    "cell; `prescribed`: a formula, no particles."},
+                    "`kernel`: a smooth bell around the sphere, which sees through inner walls; "
+                    "`diffusion`: spread from cell to cell, around them; `prescribed`: a formula, "
+                    "no particles."},
         voidage.map);
   const bool kernel = voidage.map == VoidageMap::kernel;
   const bool diffusion = voidage.map == VoidageMap::diffusion;

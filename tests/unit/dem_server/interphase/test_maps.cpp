@@ -311,6 +311,83 @@ TEST(Kernel, is_the_same_in_cells_of_any_kind_as_the_meshes_get_finer) {
   EXPECT_NEAR(below(hexahedra({.cells = {4, 4, 4}})), lattice, 0.01);  // larger than the bell
 }
 
+TEST(Centroid, keeps_rows_and_columns_when_the_number_of_particles_changes) {
+  const Mesh mesh = mesh_named("box");
+  Mapped mapped(mesh, settings_of(VoidageMap::centroid));
+  for (const int count : {3, 5, 5, 2, 0, 4}) {
+    ParticleState particles;
+    for (int i = 0; i < count; ++i) add_ball(particles, {0.19 * i + 0.1, 0.3, 0.6}, 0.02);
+    mapped.map(particles);
+    ASSERT_EQ(mapped.weights.particles(), count);
+    EXPECT_EQ(mapped.weights.row_weights, std::vector<double>(particles.id.size(), 1.0));
+    EXPECT_EQ(mapped.weights.cell_weights, mapped.weights.row_weights);
+    EXPECT_EQ(mapped.weights.cell_particles.size(), particles.id.size());
+    for (int i = 0; i < count; ++i) {
+      ASSERT_EQ(mapped.weights.row_offsets[i + 1], i + 1);
+      const Vector3& centre = mesh.cell_centres[mapped.weights.row_cells[i]];
+      EXPECT_LE((particles.position[i] - centre).cwiseAbs().maxCoeff(), 0.5 * edge);
+    }
+    EXPECT_LE(std::abs(count == 0 ? 0.0 : mapped.volume_error()), 1e-12);
+  }
+}
+
+/// What a box has of the bell of radius h: by midpoints of equal pieces no larger than h/2.
+double bell_in_box(const std::array<std::array<double, 2>, 3>& box, const Vector3& centre,
+                   double h) {
+  std::array<int, 3> parts{};
+  Vector3 step;
+  for (int k = 0; k < 3; ++k) {
+    parts[k] = std::max(1, static_cast<int>(std::ceil((box[k][1] - box[k][0]) / (0.5 * h))));
+    step[k] = (box[k][1] - box[k][0]) / parts[k];
+  }
+  double sum = 0;
+  for (int n = 0; n < parts[0] * parts[1] * parts[2]; ++n) {
+    const std::array<int, 3> at{n % parts[0], n / parts[0] % parts[1], n / parts[0] / parts[1]};
+    Vector3 point;
+    for (int k = 0; k < 3; ++k) point[k] = box[k][0] + (at[k] + 0.5) * step[k];
+    sum += std::pow(std::max(0.0, 1 - (point - centre).squaredNorm() / (h * h)), 3);
+  }
+  return sum * step.prod();
+}
+
+TEST(Kernel, on_a_lattice_is_the_sum_over_the_midpoints_of_all_cells_and_images) {
+  for (const char* name : {"box", "periodic", "graded"}) {
+    const Mesh mesh = mesh_named(name);
+    const Lattice& lattice = *mesh.lattice;
+    for (const Vector3& at : {Vector3(0.5, 0.44, 0.61), Vector3(0.02, 0.03, 0.97),
+                              Vector3(0.999, 0.5, 0.001), Vector3(0.25, 0.375, 0.5)}) {
+      for (const double width : {0.1, 0.3, 0.8}) {
+        ParticleState particles;
+        add_ball(particles, at, 0.02);
+        Mapped mapped(mesh, settings_of(VoidageMap::kernel, width));
+        mapped.map(particles);
+        const std::vector<double> shares = mapped.deposited(std::vector<double>{1});
+        const double h = 0.5 * width / std::sqrt(1 - 1 / std::cbrt(2.0));
+        std::vector<double> expected(shares.size());
+        double total = 0;
+        for (int c = 0; c < mesh.cells(); ++c) {
+          const std::array<int, 3> index{c % 8, c / 8 % 8, c / 64};
+          std::array<std::array<double, 2>, 3> box{};
+          for (int k = 0; k < 3; ++k) {
+            box[k] = {lattice.nodes[k][index[k]], lattice.nodes[k][index[k] + 1]};
+          }
+          for (int image = 0; image < 27; ++image) {
+            const Vector3 shift(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1);
+            bool there = true;
+            for (int k = 0; k < 3; ++k) there = there && (shift[k] == 0 || lattice.periodic[k]);
+            if (there) expected[c] += bell_in_box(box, at + shift, h);
+          }
+          total += expected[c];
+        }
+        for (int c = 0; c < mesh.cells(); ++c) {
+          // Rounding of midpoints, at the steepest of the bell.
+          EXPECT_NEAR(shares[c], expected[c] / total, 1e-13) << name << ' ' << c;
+        }
+      }
+    }
+  }
+}
+
 /// The largest change of a cell's solids over V_p while a sphere moves by `step` radii, steadily.
 double largest_change(const Mesh& mesh, const VoidageSettings& settings, double step) {
   Mapped mapped(mesh, settings);

@@ -23,6 +23,24 @@ double carried_share(const Vector3& load, const Vector3& acceleration) {
   return std::clamp(-(acceleration - load).dot(load) / load_squared, 0.0, 1.0);
 }
 
+const Vector3& velocity_of(const ParticleState& particles, const Prediction& past, int i) {
+  return past.ahead.empty() ? particles.velocity[i] : past.ahead[i];
+}
+
+/// The row of a particle in the window just ended; -1: there was none, or it was not there.
+int past_row(const Prediction& past, int i) {
+  if (!(past.length > 0)) return -1;
+  return past.row_before.empty() ? i : past.row_before[i];
+}
+
+/// s of a particle that was in row `before`.
+double carried_in_past(const ExchangeSettings& settings, const Prediction& past,
+                       const Vector3& velocity, double mass, int before) {
+  const Vector3 load = settings.gravity + past.forces->force[before] / mass;
+  const Vector3 change = velocity - past.velocity_before[before];
+  return carried_share(load, change / past.length);
+}
+
 /// v*, and 1 − s: the part of a further force that would move the particle.
 struct Foreseen {
   Vector3 velocity;
@@ -32,7 +50,7 @@ struct Foreseen {
 Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const Offer& offer,
                  const Vector3& gradient, const ParticleState& particles, const ParticleBulk& bulk,
                  int i) {
-  const Vector3& velocity = particles.velocity[i];
+  const Vector3& velocity = velocity_of(particles, past, i);
   if (!settings.mobile || particles.is_fixed(i)) return {velocity, 0};
   Vector3 coming = settings.gravity;
   if (settings.pressure_gradient) coming -= gradient / particles.density[i];
@@ -40,11 +58,9 @@ Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const
     coming -= settings.fluid.density * settings.gravity / particles.density[i];
   }
   if (!offer.known.empty()) coming += offer.known[i] / bulk.mass[i];
-  const int before = past.row_before.empty() ? i : past.row_before[i];
-  if (!(past.length > 0) || before < 0) return {velocity + offer.window * coming, 1};
-  const Vector3 load = settings.gravity + past.forces->force[before] / bulk.mass[i];
-  const Vector3 change = velocity - past.velocity_before[before];
-  const double carried = carried_share(load, change / past.length);
+  const int before = past_row(past, i);
+  if (before < 0) return {velocity + offer.window * coming, 1};
+  const double carried = carried_in_past(settings, past, velocity, bulk.mass[i], before);
   const Vector3 drag = past.forces->drag_impulse[before] / (bulk.mass[i] * past.length);
   return {velocity + offer.window * ((1 - carried) * coming - carried * drag), 1 - carried};
 }
@@ -83,7 +99,7 @@ void meet_eddies(const ExchangeSettings& settings, const FluidSeen& fluid,
         moves ? bulk.mass[i] / offer.coefficient[i] : std::numeric_limits<double>::infinity()};
     const Vector3 u = weights.gather(i, fluid.velocity, no_vector);
     fluctuation[i] = mean_fluctuation(point, offer.window, settings.seed, particles.id[i], eddy);
-    points[i].slip = (u + fluctuation[i] - particles.velocity[i]).norm();
+    points[i].slip = (u + fluctuation[i] - velocity_of(particles, past, i)).norm();
     offer.eddies[i] = eddy;
   }
 }
@@ -198,6 +214,23 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
   }
 }
 
+void velocities_ahead(const ExchangeSettings& settings, const ParticleState& particles,
+                      const ParticleBulk& bulk, const Prediction& past, const WindowForces& forces,
+                      double length, std::vector<Vector3>& velocity) {
+  const int count = particles.size();
+  velocity.resize(static_cast<std::size_t>(count));
+#pragma omp parallel for schedule(static) num_threads(settings.threads)
+  for (int i = 0; i < count; ++i) {
+    const Vector3& now = particles.velocity[i];
+    velocity[i] = now;
+    if (!settings.mobile || particles.is_fixed(i)) continue;
+    const int before = past_row(past, i);
+    const double carried =
+        before < 0 ? 0 : carried_in_past(settings, past, now, bulk.mass[i], before);
+    velocity[i] += length * (1 - carried) * (settings.gravity + forces.force[i] / bulk.mass[i]);
+  }
+}
+
 void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
                       std::span<const double> voidage, const ParticleState& particles,
                       const ParticleBulk& bulk, const Prediction& past, Offer& offer) {
@@ -210,7 +243,7 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
   for (int i = 0; i < count; ++i) {
     const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
     points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
-                  (u - particles.velocity[i]).norm()};
+                  (u - velocity_of(particles, past, i)).norm()};
   }
   find_drag(settings, particles, offer);
   offer.known.clear();
@@ -265,7 +298,8 @@ void OfferMaker::add_further_forces(const ExchangeSettings& settings, const Flui
   for (int i = 0; i < count; ++i) {
     LiftPoint lift;
     lift.diameter = points_[i].diameter;
-    lift.slip = offer.weights.gather(i, fluid.velocity, no_vector) - particles.velocity[i];
+    lift.slip =
+        offer.weights.gather(i, fluid.velocity, no_vector) - velocity_of(particles, past, i);
     if (lifts) {
       lift.vorticity = offer.weights.gather(i, fluid.vorticity, no_vector);
       lift.spin = particles.spin[i];

@@ -61,9 +61,12 @@ class Parallel(ProgramTest):
     def test_the_fluid_has_the_voidage_of_the_window_before(self):
         scene = small_bed()
         scene["scene"]["end_time"] = 0.002
-        scene["output"]["fields"]["every"] = scene["coupling"]["window"]
+        for what in ("fields", "particles"):
+            scene["output"][what]["every"] = scene["coupling"]["window"]
         self.run_scene(parallel(scene))
-        voidage = [self.results()[f"fields/{i}/voidage"][:] for i in range(5)]
+        fields = self.results()["fields"]
+        voidage = [fields[name]["voidage"][:] for name in sorted(fields, key=int)]
+        self.assertEqual(len(voidage), 5)
         numpy.testing.assert_array_equal(voidage[1], voidage[0])  # in the first window nothing has moved for it
         for earlier, later in zip(voidage[1:], voidage[2:]):
             self.assertTrue((earlier != later).any())

@@ -198,6 +198,32 @@ TEST(LateExchange, hands_over_the_momentum_that_the_fluid_lost_the_window_before
   }
 }
 
+TEST(LateExchange, gives_the_impulse_where_the_fluid_was_told_of_it) {
+  Bench bench;
+  bench.scene.coupling.scheme = CouplingScheme::parallel;
+  bench.scene.interphase.voidage = VoidageMap::centroid;
+  bench.scene.scene.gravity.setZero();
+  ParticleState bullet = one_sphere({0.05, 0.15, 0.15}, 1e-3, 2500);
+  bullet.velocity[0] = {100, 0, 0};  // a cell a window: 12, 13, 14, 12, ...
+  const auto side = bench.take_part(bullet);
+  Fields begin;
+  side->start({}, begin);
+  for (int step = 1; step <= 5; ++step) {
+    Fields offer;
+    side->offer(bench.window(step), bench.fluid(), offer, quiet);
+    Fields out;
+    side->advance(bench.window(step), {}, out, quiet);
+    const auto coefficient = offer.scalars(field::drag_coefficient, 27);
+    const auto given = out.vectors(field::impulse_given, 27);
+    for (int c = 0; c < 27; ++c) {
+      EXPECT_EQ(coefficient[c] > 0, c == 12 + (step - 1) % 3) << "cell " << c << ", step " << step;
+      const bool told = step > 1 && c == 12 + (step - 2) % 3;  // one window before
+      EXPECT_EQ(given[c].x() < 0, told) << "cell " << c << ", step " << step;
+    }
+    side->commit();
+  }
+}
+
 TEST(LateExchange, lets_whoever_leaves_take_along_what_was_in_flight_to_it) {
   Bench bench;
   bench.scene.coupling.scheme = CouplingScheme::parallel;

@@ -129,7 +129,8 @@ class Run {
     spdlog::warn(
         "coupling.scheme parallel: where the voidage is {:.3g} the particles answer to the fluid "
         "that they displace with {:.3g} of their own motion, one window late; above {:.4g} that "
-        "swings up (said once): set coupling.scheme: serial, see docs/theory.md, section 4",
+        "can "
+        "swing up (said once): set coupling.scheme: serial, see docs/theory.md, section 4",
         least_voidage, response, most_late_response);
   }
 

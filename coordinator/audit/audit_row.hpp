@@ -27,6 +27,7 @@ struct AuditRow {
   double wall_cfd = 0;                 ///< [s] of this machine's time
   double wall_dem = 0;                 ///< [s]
   double wall_exchange = 0;            ///< [s]
+  double wall_both = 0;                ///< [s] of wall_cfd and wall_dem that were at the same time
   std::vector<ScalarAudit> scalars;    ///< in the order of fluid.scalars
 };
 

@@ -62,6 +62,10 @@ void audit_boundary(const Mesh& mesh, const MassWindow& window, MassAudit& audit
   audit.mass_out = out.value();
 }
 
+std::span<const double> sent(const MassWindow& window) {
+  return window.voidage_sent.empty() ? window.voidage_after : window.voidage_sent;
+}
+
 struct Volumes {
   double domain = 0;  ///< ΣV [m³]
   double solids = 0;  ///< Σ(1−ε)V [m³]
@@ -74,7 +78,7 @@ Volumes sum_volumes(const Mesh& mesh, const MassWindow& window, double& storage_
   for (std::size_t c = 0; c < mesh.cell_volumes.size(); ++c) {
     const double volume = mesh.cell_volumes[c];
     domain.add(volume);
-    solids.add((1 - window.voidage_after[c]) * volume);
+    solids.add((1 - sent(window)[c]) * volume);
     storage.add(window.density * (window.voidage_after[c] - window.voidage_before[c]) * volume /
                 window.length);
   }
@@ -109,6 +113,7 @@ MassAudit audit_mass(const Mesh& mesh, const MassWindow& window, const MassTotal
                                std::max(window.particle_volume, audit_floor * volumes.domain);
 
   audit.fluid_mass = fluid_mass(mesh, window.density, window.voidage_after);
+  audit.displaced = audit.fluid_mass - fluid_mass(mesh, window.density, sent(window));
   audit.total = committed;
   audit.total.gained.add((audit.mass_in - audit.mass_out) * window.length);
   audit.cumulative_drift =

@@ -30,6 +30,9 @@ struct MassWindow {
   std::span<const double> voidage_after;   ///< ε^{n+1}, one a cell [-]
   std::span<const double> face_flux;       ///< Φ, one a face, out of the owner [kg/s]
   double particle_volume = 0;              ///< Σ V_p at the window's end [m³]
+  /// ε that the particles have sent for the window's end, if the fluid does not know it yet
+  /// (coupling.scheme parallel); empty: ε^{n+1}.
+  std::span<const double> voidage_sent{};
 };
 
 /// Fluid mass at time 0 and what has crossed the boundary since.
@@ -49,9 +52,10 @@ struct MassAudit {
   double cumulative_drift = 0;      ///< (mass − initial mass − gained) / mass [-]
   double fluid_mass = 0;            ///< Σ ρ ε V [kg]
   double voidage_volume_error = 0;  ///< |Σ(1−ε)V − ΣV_p| / max(ΣV_p, audit_floor ΣV) [-]
-  double epsilon_min = 0;           ///< of ε^{n+1} [-]
-  double epsilon_max = 0;           ///< of ε^{n+1} [-]
-  MassTotal total;                  ///< to be kept if the window is committed
+  double displaced = 0;  ///< Σ ρ (ε^{n+1} − ε sent) V: what the fluid is yet to give way to [kg]
+  double epsilon_min = 0;  ///< of ε^{n+1} [-]
+  double epsilon_max = 0;  ///< of ε^{n+1} [-]
+  MassTotal total;         ///< to be kept if the window is committed
 };
 
 /// Σ ρ ε V [kg].

@@ -34,15 +34,22 @@ void require_asked(const Fields& fields, const AskedFields& asked, const Mesh& m
 
 }  // namespace
 
+void check_offer_fields(const Message& result, const Scene& scene, const Mesh& mesh,
+                        std::int64_t step) {
+  const Fields fields = fields_of(result);
+  fields.scalars(field::drag_coefficient, mesh.cells());
+  fields.vectors(field::drag_source, mesh.cells());
+  require_asked(fields, asked_of_particles(scene), mesh);
+  fields.number(field::wall_seconds);
+  require_finite(fields, "dem_server", step);
+}
+
 void check_particle_fields(const Message& result, const Scene& scene, const Mesh& mesh,
                            std::int64_t step) {
   const Fields fields = fields_of(result);
   const auto voidage = fields.scalars(field::voidage, mesh.cells());
-  fields.scalars(field::drag_coefficient, mesh.cells());
-  fields.vectors(field::drag_source, mesh.cells());
   fields.vectors(field::impulse_given, mesh.cells());
   fields.vectors(field::particle_velocity, mesh.cells());
-  require_asked(fields, asked_of_particles(scene), mesh);
   for (const auto* name : {field::particle_volume, field::particle_count, field::particle_mass,
                            field::excess_moved, field::wall_seconds})
     fields.number(name);

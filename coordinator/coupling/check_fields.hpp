@@ -11,6 +11,9 @@ namespace fluxpact {
 /// value if one is not finite, or a voidage outside (0, 1].
 void check_particle_fields(const Message& result, const Scene& scene, const Mesh& mesh,
                            std::int64_t step);
+/// The same of an offer, what the particles let the fluid meet.
+void check_offer_fields(const Message& result, const Scene& scene, const Mesh& mesh,
+                        std::int64_t step);
 void check_fluid_fields(const Message& result, const Scene& scene, const Mesh& mesh,
                         std::int64_t step);
 

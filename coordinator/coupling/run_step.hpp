@@ -1,25 +1,21 @@
-// One coupling window, from the particles' move to the commit. The first file to read.
+// One coupling window, from the particles' move to the commit. The first file to read; who moves
+// when is in schemes.hpp.
 #pragma once
 
 #include "coordinator/audit/gate.hpp"
-#include "coordinator/session/session.hpp"
+#include "coordinator/coupling/schemes.hpp"
 
 namespace fluxpact {
 
 /// What both sides sent of the last committed window, and the audit's totals up to it.
 struct CommittedState {
+  Message offered;  ///< what the fluid was told of the particles: in coupling.scheme parallel a
+                    ///< window older than `particles`
   Message particles;
   Message fluid;
   MassTotal mass;
   MomentumTotal momentum;
   ParticleTotal solids;
-};
-
-/// What does not change from window to window.
-struct Coupling {
-  const Scene& scene;
-  const Mesh& mesh;
-  Session& session;
 };
 
 struct StepResult {

@@ -105,6 +105,7 @@ class Run {
             describe(result.verdict, result.row), moment_.time);
       }
       warn_of_violation(result);
+      warn_of_lag(result.row.mass.epsilon_min);
       moment_ = {step, window.end()};
       const auto begin = SteadyClock::now();
       recorder_.append(result.row);
@@ -119,6 +120,19 @@ class Run {
     if (result.verdict.pass) return;
     if (violations_++ == 0) spdlog::warn("{} (said once)", describe(result.verdict, result.row));
     summary_.count_violation();
+  }
+
+  void warn_of_lag(double least_voidage) {
+    if (said_lag_ || scene_.coupling.scheme != CouplingScheme::parallel) return;
+    const double response = late_response(scene_, least_voidage);
+    if (response <= most_late_response) return;
+    said_lag_ = true;
+    spdlog::warn(
+        "coupling.scheme parallel: where the voidage is {:.3g} the particles answer to the fluid "
+        "that they displace with {:.3g} of their own motion, one window late; above {:.4g} that "
+        "can "
+        "swing up (said once): set coupling.scheme: serial, see docs/theory.md, section 4",
+        least_voidage, response, most_late_response);
   }
 
   void record(const Moment& moment, bool fields, bool particles) {
@@ -152,15 +166,16 @@ class Run {
   void record_fields(const Moment& moment) {
     const int cells = coupling_.mesh.cells();
     const Fields particles = fields_of(state_.particles);
+    const Fields solids = fields_of(state_.offered);
     const Fields fluid = fields_of(state_.fluid);
     std::vector<std::span<const double>> scalars;
     for (const auto& [name, scalar] : scene_.fluid.scalars)
       scalars.push_back(fluid.scalars(field::scalar(name), cells));
     recorder_.record_fields(
-        moment, {.voidage = particles.scalars(field::voidage, cells),
+        moment, {.voidage = solids.scalars(field::voidage, cells),
                  .velocity = fluid.vectors(field::velocity, cells),
                  .pressure = fluid.scalars(field::pressure, cells),
-                 .drag_coefficient = particles.scalars(field::drag_coefficient, cells),
+                 .drag_coefficient = solids.scalars(field::drag_coefficient, cells),
                  .particle_velocity = particles.vectors(field::particle_velocity, cells),
                  .face_flux = fluid.scalars(field::face_flux, coupling_.mesh.faces()),
                  .scalars = scalars});
@@ -192,6 +207,7 @@ class Run {
   std::int64_t recorded_fields_ = -1;
   std::int64_t recorded_particles_ = -1;
   std::int64_t violations_ = 0;
+  bool said_lag_ = false;
 };
 
 }  // namespace

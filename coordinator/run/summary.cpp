@@ -96,6 +96,7 @@ void Summary::add(const AuditRow& row, const CommittedState& state, double recor
   cfd_ += row.wall_cfd;
   dem_ += row.wall_dem;
   exchange_ += row.wall_exchange;
+  both_ += row.wall_both;
   record_ += record_seconds;
   last_ = row;
 }
@@ -118,6 +119,13 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
   line("  drift at the end      {:.2e} of the gas in the domain",
        std::abs(last_.mass.cumulative_drift));
   line("  momentum handover     {:.2e} relative, in any window", largest_handover_);
+  const Vector3& flight = last_.momentum.ledger;
+  line("  in flight at the end  momentum ({:.3g}, {:.3g}, {:.3g}) N s, on its way to the particles",
+       flight.x(), flight.y(), flight.z());
+  if (scene.coupling.scheme == CouplingScheme::parallel) {
+    line("                        {:.3g} kg of fluid, yet to give way to particles that came in",
+         last_.mass.displaced);
+  }
   line("  flux closure          {:.2e} of the largest flux, at most", largest_correction_);
   const std::vector<ScalarName> names = scalar_names(scene);
   for (std::size_t i = 0; i < scalars_.size(); ++i) {
@@ -170,12 +178,13 @@ std::string Summary::text(const Scene& scene, double wall_seconds) const {
   line("  fluid                 {:.3g} iterations of the pressure and {:.3g} ms a window",
        static_cast<double>(solver_iterations_) / static_cast<double>(windows_),
        1000 * cfd_ / static_cast<double>(windows_));
-  const double steps = cfd_ + dem_ + exchange_ + record_;
+  const double steps = cfd_ + dem_ - both_ + exchange_ + record_;
   const auto share = [&](double part) { return 100 * part / std::max(steps, 1e-12); };
   line("  wall time             total {:.2f} s, {:.3g} ms a window", wall_seconds,
        1000 * steps / static_cast<double>(windows_));
   line("    particles (DEM)     {:8.2f} s  {:5.1f} %", dem_, share(dem_));
   line("    fluid (CFD)         {:8.2f} s  {:5.1f} %", cfd_, share(cfd_));
+  if (both_ > 0) line("    of these both       {:8.2f} s  {:5.1f} %", both_, share(both_));
   line("    exchange + audit    {:8.2f} s  {:5.1f} %", exchange_, share(exchange_));
   line("    record              {:8.2f} s  {:5.1f} %", record_, share(record_));
   line("  results               {} (audit.csv, results.h5, results.xdmf, run.log)",

@@ -41,7 +41,7 @@ class Summary {
          largest_correction_ = 0, largest_particle_error_ = 0;
   double largest_excess_ = 0;  ///< [m³]
   std::int64_t excess_windows_ = 0;
-  double cfd_ = 0, dem_ = 0, exchange_ = 0, record_ = 0;  ///< [s]
+  double cfd_ = 0, dem_ = 0, both_ = 0, exchange_ = 0, record_ = 0;  ///< [s]
   struct ScalarExtent {
     double lowest = INFINITY, highest = -INFINITY, largest_imbalance = 0;
   };

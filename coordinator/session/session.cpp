@@ -125,8 +125,9 @@ void Session::greet(const std::string& scene_text, const Mesh& mesh) {
     Message geometry = mesh_message(mesh);
     tell(each.role, geometry);
   }
+  await_replies(MessageType::mesh);
   for (const Peer& each : peers_) {
-    const Message reply = collect(each.role, MessageType::mesh, scene_.launch.start_deadline);
+    const Message reply = take_reply(each.role);
     const std::string& got = text(reply.header, "fingerprint");
     if (got != expected)
       throw ProtocolError("{}: rebuilt the mesh with fingerprint {}, ours is {}", where(each), got,
@@ -159,6 +160,7 @@ void Session::take_hello(const std::string& routing, const Message& hello) {
     place.backend = backend;
     place.gives = texts(header, "gives");
     place.needs = texts(header, "needs");
+    place.offers = header.body.contains("offers") && integer(header, "offers") != 0;
     place.received = 1;
     place.routing = routing;
     spdlog::info("{}: hello from '{}', backend {}, {}", place.name, text(header, "name"), backend,
@@ -192,6 +194,13 @@ void Session::check_matching() const {
   };
   check_asked(peers_[static_cast<std::size_t>(Role::fluid)], asked_of_fluid(scene_));
   check_asked(peers_[static_cast<std::size_t>(Role::particles)], asked_of_particles(scene_));
+  const Peer& particles = peers_[static_cast<std::size_t>(Role::particles)];
+  if (scene_.coupling.scheme == CouplingScheme::parallel && !particles.offers) {
+    throw ProtocolError(
+        "coupling.scheme is parallel, for which {} ({}) would have to make offers, and it does not "
+        "say that it can; set coupling.scheme: serial",
+        particles.name, particles.backend);
+  }
   for (const Peer& one : peers_) {
     const Peer& other = peers_[1 - static_cast<std::size_t>(one.role)];
     for (const std::string& field : one.needs) {
@@ -229,24 +238,38 @@ void Session::tell(Role role, Message& message) {
 
 Message Session::ask(Role role, Message& message) {
   tell(role, message);
-  return collect(role, message.header.type,
-                 message.header.type == MessageType::start ? scene_.launch.start_deadline
-                                                           : scene_.launch.deadline);
+  await_replies(message.header.type);
+  return take_reply(role);
 }
 
-Message Session::collect(Role role, MessageType asked, double patience) {
-  Peer& from = peer(role);
-  while (!from.reply) {
+Session::Replies Session::ask_both(Message& fluid, Message& particles) {
+  tell(Role::fluid, fluid);
+  tell(Role::particles, particles);
+  await_replies(fluid.header.type);
+  return {take_reply(Role::fluid), take_reply(Role::particles)};
+}
+
+/// Wait until all who were asked have answered. Each has its own deadline, from its last sign of
+/// life.
+void Session::await_replies(MessageType asked) {
+  const bool starting = asked == MessageType::mesh || asked == MessageType::start;
+  const double patience = starting ? scene_.launch.start_deadline : scene_.launch.deadline;
+  while (std::ranges::any_of(peers_, &Peer::asked)) {
     if (interrupts() > 1) throw Error(ExitCode::interrupted, "interrupted twice: stopped at once");
-    if (SteadyClock::now() - from.last_sign > milliseconds(patience)) {
+    for (const Peer& each : peers_) {
+      if (!each.asked || SteadyClock::now() - each.last_sign <= milliseconds(patience)) continue;
       throw ProtocolError(
           "{}: silent for {} s after '{}'; it hangs, or launch.deadline is too short for this "
           "scene",
-          where(from), patience, name_of(asked));
+          where(each), patience, name_of(asked));
     }
     take_message(Milliseconds(200));
-    keep_others_awake(role);
+    keep_idle_awake();
   }
+}
+
+Message Session::take_reply(Role role) {
+  Peer& from = peer(role);
   Message reply = std::move(*from.reply);
   from.reply.reset();
   return reply;
@@ -333,12 +356,12 @@ void Session::check_processes() {
 }
 
 /// Participants that wait for their turn must know that we live.
-void Session::keep_others_awake(Role busy) {
+void Session::keep_idle_awake() {
   const auto now = SteadyClock::now();
   if (now - last_heartbeat_ < milliseconds(scene_.launch.deadline / 4)) return;
   last_heartbeat_ = now;
   for (const Peer& each : peers_) {
-    if (each.role == busy || !each.present() || each.state == SessionState::configured) continue;
+    if (each.asked || !each.present() || each.state == SessionState::configured) continue;
     Message heartbeat;
     tell(each.role, heartbeat);
   }

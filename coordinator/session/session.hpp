@@ -32,6 +32,13 @@ class Session {
   /// ProtocolError if the participant ends, is silent past the deadline, or breaks the protocol;
   /// Error with its own exit code if it reports one.
   Message ask(Role role, Message& message);
+
+  /// The same of both at once, which then work at the same time.
+  struct Replies {
+    Message fluid;
+    Message particles;
+  };
+  Replies ask_both(Message& fluid, Message& particles);
   void tell(Role role, Message& message);
 
   /// Step and attempt that the next messages carry.
@@ -50,6 +57,7 @@ class Session {
     std::string routing;
     std::string backend;
     std::vector<std::string> gives, needs;
+    bool offers = false;
     SessionState state = SessionState::greeting;
     std::int64_t sent = 0;
     std::int64_t received = 0;
@@ -70,8 +78,9 @@ class Session {
   void check_matching() const;
   void check_header(const Peer& from, const Header& header) const;
   void check_processes();
-  void keep_others_awake(Role busy);
-  Message collect(Role role, MessageType asked, double deadline);
+  void keep_idle_awake();
+  void await_replies(MessageType asked);
+  Message take_reply(Role role);
   std::string where(const Peer& of) const;
 
   const Scene& scene_;

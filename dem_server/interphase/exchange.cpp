@@ -26,6 +26,24 @@ double carried_share(const Vector3& load, const Vector3& acceleration) {
   return std::clamp(-(acceleration - load).dot(load) / load_squared, 0.0, 1.0);
 }
 
+const Vector3& velocity_of(const ParticleState& particles, const Prediction& past, int i) {
+  return past.ahead.empty() ? particles.velocity[i] : past.ahead[i];
+}
+
+/// The row of a particle in the window just ended; -1: there was none, or it was not there.
+int past_row(const Prediction& past, int i) {
+  if (!(past.length > 0)) return -1;
+  return past.row_before.empty() ? i : past.row_before[i];
+}
+
+/// s of a particle that was in row `before`.
+double carried_in_past(const ExchangeSettings& settings, const Prediction& past,
+                       const Vector3& velocity, double per_mass, int before) {
+  const Vector3 load = settings.gravity + per_mass * past.forces->force[before];
+  const Vector3 change = velocity - past.velocity_before[before];
+  return carried_share(load, 1 / past.length * change);
+}
+
 /// v*, and 1 − s: the part of a further force that would move the particle.
 struct Foreseen {
   Vector3 velocity;
@@ -35,7 +53,7 @@ struct Foreseen {
 Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const Offer& offer,
                  const Vector3& gradient, const ParticleState& particles, const ParticleBulk& bulk,
                  int i) {
-  const Vector3& velocity = particles.velocity[i];
+  const Vector3& velocity = velocity_of(particles, past, i);
   if (!settings.mobile || particles.is_fixed(i)) return {velocity, 0};
   const double per_density = 1 / particles.density[i];
   const double per_mass = 1 / bulk.mass[i];
@@ -43,13 +61,10 @@ Foreseen foresee(const ExchangeSettings& settings, const Prediction& past, const
   if (settings.pressure_gradient) coming -= per_density * gradient;
   if (settings.buoyancy) coming -= settings.fluid.density * per_density * settings.gravity;
   if (!offer.known.empty()) coming += per_mass * offer.known[i];
-  const int before = past.row_before.empty() ? i : past.row_before[i];
-  if (!(past.length > 0) || before < 0) return {velocity + offer.window * coming, 1};
-  const double per_length = 1 / past.length;
-  const Vector3 load = settings.gravity + per_mass * past.forces->force[before];
-  const Vector3 change = velocity - past.velocity_before[before];
-  const double carried = carried_share(load, per_length * change);
-  const Vector3 drag = per_mass * per_length * past.forces->drag_impulse[before];
+  const int before = past_row(past, i);
+  if (before < 0) return {velocity + offer.window * coming, 1};
+  const double carried = carried_in_past(settings, past, velocity, per_mass, before);
+  const Vector3 drag = per_mass / past.length * past.forces->drag_impulse[before];
   return {velocity + offer.window * ((1 - carried) * coming - carried * drag), 1 - carried};
 }
 
@@ -85,7 +100,7 @@ void meet_eddies(const ExchangeSettings& settings, const FluidSeen& fluid,
         moves ? bulk.mass[i] / offer.coefficient[i] : std::numeric_limits<double>::infinity()};
     const Vector3 u = weights.gather(i, fluid.velocity, no_vector);
     fluctuation[i] = mean_fluctuation(point, offer.window, settings.seed, particles.id[i], eddy);
-    points[i].slip = (u + fluctuation[i] - particles.velocity[i]).norm();
+    points[i].slip = (u + fluctuation[i] - velocity_of(particles, past, i)).norm();
     offer.eddies[i] = eddy;
   }
 }
@@ -200,6 +215,23 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
   }
 }
 
+void velocities_ahead(const ExchangeSettings& settings, const ParticleState& particles,
+                      const ParticleBulk& bulk, const Prediction& past, const WindowForces& forces,
+                      double length, std::vector<Vector3>& velocity) {
+  const int count = particles.size();
+  velocity.resize(static_cast<std::size_t>(count));
+#pragma omp parallel for schedule(static) num_threads(settings.threads)
+  for (int i = 0; i < count; ++i) {
+    const Vector3& now = particles.velocity[i];
+    velocity[i] = now;
+    if (!settings.mobile || particles.is_fixed(i)) continue;
+    const int before = past_row(past, i);
+    const double carried =
+        before < 0 ? 0 : carried_in_past(settings, past, now, 1 / bulk.mass[i], before);
+    velocity[i] += length * (1 - carried) * (settings.gravity + forces.force[i] / bulk.mass[i]);
+  }
+}
+
 void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
                       std::span<const double> voidage, const ParticleState& particles,
                       const ParticleBulk& bulk, const Prediction& past, Offer& offer) {
@@ -222,7 +254,7 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
     for (int i = rows.first; i < rows.last; ++i) {
       const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
       points_[i] = {offer.weights.gather(i, voidage, 0.0), 2 * particles.radius[i],
-                    (u - particles.velocity[i]).norm()};
+                    (u - velocity_of(particles, past, i)).norm()};
     }
     DragSurvey survey = find_drag(settings, rows, offer);
     if (survey.first_bad < 0 && !offer.eddies.empty()) {
@@ -265,7 +297,8 @@ void OfferMaker::add_known(const ExchangeSettings& settings, const FluidSeen& fl
   for (int i = rows.first; i < rows.last; ++i) {
     LiftPoint lift;
     lift.diameter = points_[i].diameter;
-    lift.slip = offer.weights.gather(i, fluid.velocity, no_vector) - particles.velocity[i];
+    lift.slip =
+        offer.weights.gather(i, fluid.velocity, no_vector) - velocity_of(particles, past, i);
     if (lifts) {
       lift.vorticity = offer.weights.gather(i, fluid.vorticity, no_vector);
       lift.spin = particles.spin[i];

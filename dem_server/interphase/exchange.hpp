@@ -155,7 +155,17 @@ struct Prediction {
   /// rows.
   std::span<const int> row_before = {};
   std::span<const Eddy> eddies = {};  ///< of that window's offer
+  /// Velocities [m/s] at the start of the coming window, if that is not now (velocities_ahead): the
+  /// window just ended is then the one that leads there. Empty: those of the particles.
+  std::span<const Vector3> ahead = {};
 };
+
+/// Velocities [m/s] at the end of a window of `length` [s] that is yet to come under `forces` (rows
+/// as they are now): v + Δt (1 − s) l, l the load by gravity and these forces, s the share that
+/// contacts carried in the window just ended, `past`. Without contacts that is exact.
+void velocities_ahead(const ExchangeSettings& settings, const ParticleState& particles,
+                      const ParticleBulk& bulk, const Prediction& past, const WindowForces& forces,
+                      double length, std::vector<Vector3>& velocity);
 
 /// Fills weights (already built), k and v* of an offer for a coming window of `offer.window`.
 /// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are

@@ -61,6 +61,10 @@ class ChosenByScene : public Participant {
                const Progress& progress) override {
     chosen_->advance(window, in, out, progress);
   }
+  void offer(const Window& window, const Fields& in, Fields& out,
+             const Progress& progress) override {
+    chosen_->offer(window, in, out, progress);
+  }
   void commit() override { chosen_->commit(); }
   void rollback() override { chosen_->rollback(); }
   void snapshot(Fields& out) override { chosen_->snapshot(out); }

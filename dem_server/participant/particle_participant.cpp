@@ -38,6 +38,7 @@ Identity particle_identity(const std::string& backend) {
        field::particle_velocity, field::particle_volume, field::particle_count,
        field::particle_mass, field::excess_moved, field::wall_seconds},
       {field::velocity, field::pressure_gradient}};
+  identity.offers = true;
   for (std::string& name : all_asked_of_particles()) identity.gives.push_back(std::move(name));
   return identity;
 }
@@ -66,6 +67,8 @@ void ParticleParticipant::configure(const Scene& scene, const Mesh& mesh) {
   if (settings_.pressure_returns) pressure_return_.resize(cells);
   pending_ = false;
   last_window_ = 0;
+  late_.reset();
+  if (scene.coupling.scheme == CouplingScheme::parallel) late_.emplace();
   mixed_.reset();
   if (scene.particles.backend == ParticleBackend::native &&
       scene.particles.numerics.precision == Precision::mixed) {
@@ -89,19 +92,35 @@ void ParticleParticipant::start(const Fields& in, Fields& out) {
   offer_maker_.make(settings_, fluid_view_.of(fluid, candidate_.weights),
                     candidate_.weights.seen(std::span<const double>(voidage_), voidage_seen_),
                     engine_->particles(), bulk_, {}, candidate_);
-  publish(seconds_since(began), out);
+  publish_offer(candidate_, out);
+  publish_state(impulse_given_, out);
+  out.add_number(field::wall_seconds, seconds_since(began));
   std::swap(committed_, candidate_);
+  if (late_) late_->start(voidage_);
+}
+
+void ParticleParticipant::require_settled(const char* asked, std::int64_t step) const {
+  if (!pending_) return;
+  throw ProtocolError(
+      "particle side: asked to {} step {} while the last candidate is neither committed nor "
+      "rolled back",
+      asked, step);
 }
 
 void ParticleParticipant::advance(const Window& window, const Fields& in, Fields& out,
                                   const Progress& progress) {
   const auto began = SteadyClock::now();
-  if (pending_) {
-    throw ProtocolError(
-        "particle side: asked to advance step {} while the last candidate is neither committed nor "
-        "rolled back",
-        window.step);
+  require_settled("advance", window.step);
+  if (late_) {
+    advance_under_offer(window, out, progress);
+  } else {
+    advance_and_offer(window, in, out, progress);
   }
+  out.add_number(field::wall_seconds, seconds_since(began));
+}
+
+void ParticleParticipant::advance_and_offer(const Window& window, const Fields& in, Fields& out,
+                                            const Progress& progress) {
   const int cells = static_cast<int>(cell_volumes_.size());
   const FluidSeen fluid = fluid_seen(settings_, in, cells, !committed_.initial);
   measure_bulk(engine_->particles(), bulk_);
@@ -109,12 +128,7 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
                 engine_->particles(), bulk_, window.step, window.length, forces_);
   velocity_before_ = engine_->particles().velocity;
 
-  pending_ = true;  // from here on there is something to roll back
-  engine_->advance(window.length, sub_steps_, forces_.force, progress);
-  // The bulk is still that of the rows which moved.
-  if (flow_) flow_->advance(window, bulk_, *engine_);
-
-  map_particles(window.step);
+  move_particles(window, forces_.force, bulk_, progress);
   candidate_.window = window.length;
   candidate_.initial = false;
   offer_maker_.make(settings_, fluid_view_.of(fluid, candidate_.weights),
@@ -125,7 +139,41 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
                     candidate_);
   // By the weights the impulse was computed with: those are what the fluid answered to.
   deposit_vectors(committed_.weights, forces_.impulse, settings_.threads, impulse_given_);
-  publish(seconds_since(began), out);
+  publish_offer(candidate_, out);
+  publish_state(impulse_given_, out);
+}
+
+void ParticleParticipant::offer(const Window& window, const Fields& in, Fields& out,
+                                const Progress& progress) {
+  const auto began = SteadyClock::now();
+  if (!late_) Participant::offer(window, in, out, progress);
+  require_settled("make an offer for", window.step);
+  late_->offer({settings_, engine_->particles(), late_->voidage(), flow_.has_value()}, window, in,
+               offer_maker_, fluid_view_, committed_);
+  publish_offer(committed_, out);
+  out.add_number(field::wall_seconds, seconds_since(began));
+}
+
+void ParticleParticipant::advance_under_offer(const Window& window, Fields& out,
+                                              const Progress& progress) {
+  if (!late_->offered()) {
+    throw ProtocolError(
+        "particle side: asked to advance step {} in coupling.scheme parallel without being asked "
+        "for its offer first",
+        window.step);
+  }
+  move_particles(window, late_->force(), late_->bulk(), progress);
+  publish_state(late_->impulse_given(), out);
+}
+
+/// The engine's sub-steps, who leaves and comes in, and the map of the new positions. `bulk`: of
+/// the rows that move.
+void ParticleParticipant::move_particles(const Window& window, std::span<const Vector3> force,
+                                         const ParticleBulk& bulk, const Progress& progress) {
+  pending_ = true;  // from here on there is something to roll back
+  engine_->advance(window.length, sub_steps_, force, progress);
+  if (flow_) flow_->advance(window, bulk, *engine_);
+  map_particles(window.step);
 }
 
 void ParticleParticipant::map_particles(std::int64_t step) {
@@ -138,16 +186,19 @@ void ParticleParticipant::map_particles(std::int64_t step) {
                cell_solids_, particle_velocity_);
 }
 
-void ParticleParticipant::publish(double wall_seconds, Fields& out) {
-  deposit_offer(candidate_, settings_.threads, drag_coefficient_, drag_source_);
-  out.add(field::voidage, voidage_);
+void ParticleParticipant::publish_offer(const Offer& offer, Fields& out) {
+  deposit_offer(offer, settings_.threads, drag_coefficient_, drag_source_);
   out.add(field::drag_coefficient, drag_coefficient_);
   out.add(field::drag_source, drag_source_);
   if (settings_.pressure_returns) {
-    deposit_returned(candidate_, settings_.threads, pressure_return_);
+    deposit_returned(offer, settings_.threads, pressure_return_);
     out.add(field::pressure_return, pressure_return_);
   }
-  out.add(field::impulse_given, impulse_given_);
+}
+
+void ParticleParticipant::publish_state(std::span<const Vector3> impulse_given, Fields& out) {
+  out.add(field::voidage, voidage_);
+  out.add(field::impulse_given, impulse_given);
   out.add(field::particle_velocity, particle_velocity_);
   out.add_number(field::particle_volume, total(bulk_.volume));
   out.add_number(field::particle_count, engine_->particles().size());
@@ -157,16 +208,24 @@ void ParticleParticipant::publish(double wall_seconds, Fields& out) {
     out.add_number(field::particles_beyond_drag,
                    static_cast<double>(offer_maker_.survey().outside));
   }
-  if (flow_) publish_flow(flow_->window(), out);
-  out.add_number(field::wall_seconds, wall_seconds);
+  if (!flow_) return;
+  flow_sent_ = flow_->window();
+  if (late_) flow_sent_.momentum_left.front() += late_->departed_impulse();
+  publish_flow(flow_sent_, out);
 }
 
 void ParticleParticipant::commit() {
   if (!pending_) throw ProtocolError("particle side: asked to commit, but nothing was advanced");
   engine_->commit();
   if (flow_) flow_->commit();
-  std::swap(committed_, candidate_);
-  last_window_ = committed_.window;
+  if (late_) {
+    late_->commit(committed_, candidate_, voidage_,
+                  flow_ ? flow_->row_before() : std::span<const int>{});
+    last_window_ = late_->last_length();
+  } else {
+    std::swap(committed_, candidate_);
+    last_window_ = committed_.window;
+  }
   pending_ = false;
   warn_of_drag();
 }
@@ -187,6 +246,7 @@ void ParticleParticipant::warn_of_drag() {
 }
 
 void ParticleParticipant::rollback() {
+  if (late_) late_->rollback();
   if (!pending_) return;  // the window failed before anything was changed
   engine_->rollback();
   if (flow_) flow_->rollback();
@@ -211,6 +271,7 @@ void ParticleParticipant::snapshot(Fields& out) {
 
 /// What the fluid did in the last window to those that are there now [N].
 std::vector<Vector3> ParticleParticipant::last_force() const {
+  if (late_) return late_->last_force(engine_->particles().size());
   const auto now = static_cast<std::size_t>(engine_->particles().size());
   const std::span<const int> before = flow_ ? flow_->row_before() : std::span<const int>{};
   std::vector<Vector3> force(now, Vector3::Zero());

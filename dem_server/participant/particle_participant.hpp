@@ -3,7 +3,7 @@
 //
 // One window: forces from the last offer and the fluid's answer -> the engine's sub-steps -> who
 // leaves and who comes in -> weights, voidage, mean velocity of the new positions -> the next offer
-// of drag.
+// of drag. In coupling.scheme parallel the offer comes first: late_exchange.hpp.
 #pragma once
 
 #include <functional>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dem_server/interphase/exchange.hpp"
+#include "dem_server/participant/late_exchange.hpp"
 #include "dem_server/participant/particle_flow.hpp"
 #include "proto/participant/participant.hpp"
 
@@ -44,6 +45,11 @@ class ParticleParticipant : public Participant {
   void commit() override;
   void rollback() override;
 
+  /// In coupling.scheme parallel, with the fields that `advance` needs in serial. Throws as that,
+  /// and ProtocolError in another scheme.
+  void offer(const Window& window, const Fields& in, Fields& out,
+             const Progress& progress) override;
+
   /// id, position, velocity, spin, radius, density. Throws ProtocolError while a candidate is
   /// pending: the engine then shows that one.
   void snapshot(Fields& out) override;
@@ -54,8 +60,15 @@ class ParticleParticipant : public Participant {
 
  private:
   std::vector<Vector3> last_force() const;
+  void require_settled(const char* asked, std::int64_t step) const;
+  void advance_and_offer(const Window& window, const Fields& in, Fields& out,
+                         const Progress& progress);
+  void advance_under_offer(const Window& window, Fields& out, const Progress& progress);
+  void move_particles(const Window& window, std::span<const Vector3> force,
+                      const ParticleBulk& bulk, const Progress& progress);
   void map_particles(std::int64_t step);
-  void publish(double wall_seconds, Fields& out);
+  void publish_offer(const Offer& offer, Fields& out);
+  void publish_state(std::span<const Vector3> impulse_given, Fields& out);
   void warn_of_drag();
 
   std::string backend_;
@@ -64,6 +77,7 @@ class ParticleParticipant : public Participant {
   std::optional<WeightsBuilder> builder_;
   std::optional<ExcessFinder> excess_;
   std::optional<ParticleFlow> flow_;  ///< none: nobody can come in or leave
+  std::optional<LateExchange> late_;  ///< of coupling.scheme parallel
   ExchangeSettings settings_;
   int sub_steps_ = 1;
   double first_window_ = 0;  ///< [s]
@@ -89,6 +103,7 @@ class ParticleParticipant : public Participant {
   std::vector<double> cell_solids_;   ///< [m³]
   std::vector<double> voidage_seen_;  ///< if the map goes on from cell to cell
   std::vector<Vector3> velocity_before_;
+  WindowFlow flow_sent_;
   std::vector<double> voidage_;
   std::vector<double> drag_coefficient_;
   std::vector<Vector3> drag_source_;

@@ -29,6 +29,10 @@ class PrescribedSolids : public Participant {
   /// coefficient is negative or not finite.
   void advance(const Window& window, const Fields& in, Fields& out,
                const Progress& progress) override;
+  /// In coupling.scheme parallel: B of the committed ε, and impulse_given for what the fluid
+  /// answered to the offer before.
+  void offer(const Window& window, const Fields& in, Fields& out,
+             const Progress& progress) override;
   void commit() override;
   void rollback() override;
 
@@ -43,8 +47,11 @@ class PrescribedSolids : public Participant {
     std::vector<double> drag_coefficient;  ///< B [kg/s]
   };
 
-  void evaluate(double time, std::int64_t step, std::span<const Vector3> velocity);
-  void publish(double wall_seconds, Fields& out);
+  void find_impulse(const Window& window, const Fields& in, const State& answered);
+  void find_voidage(double time, std::int64_t step);
+  void find_drag(std::span<const Vector3> velocity, State& state);
+  void publish_offer(const State& state, Fields& out);
+  void publish_state(double wall_seconds, Fields& out);
 
   std::string backend_;
   ExchangeSettings settings_;
@@ -53,9 +60,12 @@ class PrescribedSolids : public Participant {
   double first_window_ = 0;  ///< [s]
   std::vector<double> cell_volumes_;
   std::vector<Vector3> cell_centres_;
+  State answered_;  ///< of coupling.scheme parallel: what the fluid's newest state answers
   State committed_;
   State candidate_;
   bool pending_ = false;
+  bool offers_ = false;   ///< coupling.scheme is parallel
+  bool offered_ = false;  ///< the window to come has its offer
   std::vector<DragPoint> points_;
   std::vector<Vector3> zero_;
   std::vector<Vector3> impulse_given_;

@@ -10,8 +10,8 @@
 namespace fluxpact {
 namespace {
 
-constexpr std::array<std::string_view, 14> type_names{
-    "hello",  "welcome", "reject",   "configure", "mesh",      "start", "advance",
+constexpr std::array<std::string_view, 15> type_names{
+    "hello",  "welcome", "reject",   "configure", "mesh",      "start", "offer", "advance",
     "result", "commit",  "rollback", "snapshot",  "heartbeat", "error", "bye"};
 constexpr std::size_t max_arrays = 256;
 constexpr std::size_t max_body = 256;

@@ -25,8 +25,9 @@ enum class MessageType {
   configure,  ///< coordinator: the scene
   mesh,       ///< coordinator: the mesh; answered by `result` with its fingerprint
   start,      ///< coordinator: initial fields of the others; answered by `result` with yours
+  offer,      ///< coordinator: what do you offer the fluid for this window; answered by `result`
   advance,    ///< coordinator: one window; answered by `result`
-  result,     ///< participant: the answer to mesh, start, advance, snapshot
+  result,     ///< participant: the answer to mesh, start, offer, advance, snapshot
   commit,     ///< coordinator: the candidate is now the committed state
   rollback,   ///< coordinator: forget the candidate
   snapshot,   ///< coordinator: send what only you hold; answered by `result`

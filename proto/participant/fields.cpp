@@ -31,4 +31,12 @@ double Fields::number(std::string_view name) const {
   return found->second;
 }
 
+void Participant::offer(const Window& window, const Fields& /*in*/, Fields& /*out*/,
+                        const Progress& /*progress*/) {
+  throw ProtocolError(
+      "asked for an offer in step {}, which this participant cannot make; set coupling.scheme: "
+      "serial",
+      window.step);
+}
+
 }  // namespace fluxpact

@@ -2,7 +2,7 @@
 //
 // A participant keeps a committed and a candidate state. `advance` writes only the candidate;
 // `commit` makes it the committed one; `rollback` forgets it. That one idea gives retry, implicit
-// coupling and recovery.
+// coupling and recovery. What `offer` says of a window is part of that window's candidate.
 #pragma once
 
 #include <cstdint>
@@ -67,6 +67,8 @@ struct Identity {
   std::string backend;
   std::vector<std::string> gives;
   std::vector<std::string> needs;
+  /// Particles: can `offer`, and so take part in coupling.scheme parallel.
+  bool offers = false;
 };
 
 /// To be called now and then during a long `advance`: tells the coordinator that we are alive.
@@ -95,6 +97,12 @@ class Participant {
                        const Progress& progress) = 0;
   virtual void commit() = 0;
   virtual void rollback() = 0;
+
+  /// Particles in coupling.scheme parallel, before the `advance` of the same window, which then
+  /// gets no fields: from the committed state at window.start, and what the fluid has made of it,
+  /// the drag that the fluid is to meet in this window. Throws ProtocolError unless
+  /// `Identity::offers`.
+  virtual void offer(const Window& window, const Fields& in, Fields& out, const Progress& progress);
 
   /// The committed state of what only this side holds (particles), for the record. Empty if
   /// nothing.

@@ -70,6 +70,7 @@ class Session {
                          {"needs", identity.needs},
                          {"program", version_line()},
                          {"pid", std::int64_t{getpid()}}};
+    if (identity.offers) hello.header.body["offers"] = std::int64_t{1};
     send(hello);
   }
 
@@ -120,6 +121,9 @@ class Session {
       case MessageType::advance:
         answer([&](Fields& out) { advance(message, out); });
         break;
+      case MessageType::offer:
+        answer([&](Fields& out) { offer(message, out); });
+        break;
       case MessageType::snapshot:
         answer([&](Fields& out) { snapshot(header, out); });
         break;
@@ -156,11 +160,20 @@ class Session {
     send_result(out);
   }
 
+  static Window window_of(const Header& header) {
+    return {header.step, number(header, "start"), number(header, "length")};
+  }
+
   void advance(const Message& message, Fields& out) {
-    const Window window{message.header.step, number(message.header, "start"),
-                        number(message.header, "length")};
     last_sent_ = SteadyClock::now();
-    participant_.advance(window, fields_of(message), out, [this] { say_alive(deadline_); });
+    participant_.advance(window_of(message.header), fields_of(message), out,
+                         [this] { say_alive(deadline_); });
+  }
+
+  void offer(const Message& message, Fields& out) {
+    last_sent_ = SteadyClock::now();
+    participant_.offer(window_of(message.header), fields_of(message), out,
+                       [this] { say_alive(deadline_); });
   }
 
   void snapshot(const Header& header, Fields& out) {

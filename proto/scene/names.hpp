@@ -35,6 +35,7 @@ inline constexpr auto enum_names<OnViolation> = std::to_array<Named<OnViolation>
 template <>
 inline constexpr auto enum_names<CouplingScheme> = std::to_array<Named<CouplingScheme>>({
     {CouplingScheme::serial, "serial"},
+    {CouplingScheme::parallel, "parallel"},
 });
 template <>
 inline constexpr auto enum_names<LaunchMode> = std::to_array<Named<LaunchMode>>({

@@ -45,7 +45,7 @@ struct SceneSettings {
 
 enum class Continuity { conservative, legacy };
 enum class OnViolation { stop, warn };
-enum class CouplingScheme { serial };
+enum class CouplingScheme { serial, parallel };
 
 struct AuditSettings {
   double limit = 1e-10;  ///< largest accepted relative imbalance and cell residual [-]

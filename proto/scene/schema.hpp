@@ -55,7 +55,8 @@ void describe(Visit& visit, CouplingSettings& coupling) {
         coupling.window);
   visit({.name = "scheme",
          .meaning = "`serial`: particles advance with the committed fluid, then the fluid with the "
-                    "new voidage."},
+                    "new voidage. `parallel`: both advance at once, the fluid with the voidage of "
+                    "the window's start: faster, conservative all the same, one window late."},
         coupling.scheme);
   visit({.name = "continuity",
          .meaning = "`conservative`: superficial face fluxes balance the change of voidage in "

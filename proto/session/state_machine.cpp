@@ -12,7 +12,7 @@ struct Transition {
 };
 
 using enum SessionState;
-constexpr std::array<Transition, 9> transitions{{
+constexpr std::array<Transition, 12> transitions{{
     {greeting, MessageType::welcome, welcomed},
     {greeting, MessageType::reject, closed},
     {welcomed, MessageType::configure, configured},
@@ -20,6 +20,9 @@ constexpr std::array<Transition, 9> transitions{{
     {meshed, MessageType::start, committed},
     {committed, MessageType::advance, candidate},
     {committed, MessageType::snapshot, committed},
+    {committed, MessageType::offer, offered},
+    {offered, MessageType::advance, candidate},
+    {offered, MessageType::rollback, committed},
     {candidate, MessageType::commit, committed},
     {candidate, MessageType::rollback, committed},
 }};
@@ -27,8 +30,8 @@ constexpr std::array<Transition, 9> transitions{{
 }  // namespace
 
 std::string_view name_of(SessionState state) {
-  constexpr std::array<std::string_view, 7> names{"greeting",  "welcomed",  "configured", "meshed",
-                                                  "committed", "candidate", "closed"};
+  constexpr std::array<std::string_view, 8> names{"greeting",  "welcomed", "configured", "meshed",
+                                                  "committed", "offered",  "candidate",  "closed"};
   return names.at(static_cast<std::size_t>(state));
 }
 
@@ -44,8 +47,8 @@ std::optional<SessionState> next_state(SessionState state, MessageType said) {
 }
 
 bool is_answered(MessageType said) {
-  return said == MessageType::mesh || said == MessageType::start || said == MessageType::advance ||
-         said == MessageType::snapshot;
+  return said == MessageType::mesh || said == MessageType::start || said == MessageType::offer ||
+         said == MessageType::advance || said == MessageType::snapshot;
 }
 
 SessionState require_next(SessionState state, MessageType said, std::string_view peer) {

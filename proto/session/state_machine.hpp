@@ -15,6 +15,7 @@ enum class SessionState {
   configured,  ///< knows the scene
   meshed,      ///< knows the mesh
   committed,   ///< holds one state, that of the last committed window
+  offered,     ///< beside it, has made the offer for a window that it is yet to advance
   candidate,   ///< holds a second state, not yet committed
   closed,
 };

@@ -15,14 +15,14 @@ PROTOCOL_VERSION = 1
 
 
 class Participant:
-    def __init__(self, endpoint, voidage, drag):
+    def __init__(self, endpoint, voidage, drag, offers=False):
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.linger = 0
         self.socket.connect(endpoint)
         self.session, self.sequence, self.received = "", 0, 0
         self.voidage, self.drag = voidage, drag
         self.step, self.attempt = 0, 0
-        self.in_flight = None
+        self.offers = offers  # can take part in coupling.scheme parallel
         self.log = []
 
     def say(self, kind, body=None, arrays=None):
@@ -63,6 +63,7 @@ class Participant:
                 "pid": 0,
                 "gives": ["voidage", "drag_coefficient", "drag_source", "impulse_given", "particle_velocity"],
                 "needs": ["velocity", "pressure_gradient"],
+                **({"offers": 1} if self.offers else {}),
             },
         )
         while True:
@@ -79,9 +80,14 @@ class Participant:
                 # The fingerprint is XXH64 over the arrays as docs/protocol.md says.
                 self.say("result", {"fingerprint": fingerprint(header, arrays)})
             elif kind == "start":
-                self.answer(None, 0.0)
-            elif kind == "advance":
-                self.answer(arrays, header["body"]["length"])
+                self.answer(self.impulse(None, 0.0), {**self.law(), **self.solids()})
+            elif kind == "offer":
+                self.given = self.impulse(arrays, header["body"]["length"])
+                self.say("result", {"wall_seconds": 0.0}, self.law())
+            elif kind == "advance" and arrays:
+                self.answer(self.impulse(arrays, header["body"]["length"]), {**self.law(), **self.solids()})
+            elif kind == "advance":  # the offer has said the rest
+                self.answer(self.given, self.solids())
             elif kind == "snapshot":
                 self.say("result")
             elif kind == "bye":
@@ -101,24 +107,27 @@ class Participant:
                 volumes[neighbour[face]] -= ring.mean(axis=0) @ area / 3
         self.volumes = volumes
 
-    def answer(self, fluid, length):
-        cells = len(self.volumes)
-        given = numpy.zeros((cells, 3))
+    def impulse(self, fluid, length):
+        given = numpy.zeros((len(self.volumes), 3))
         if fluid is not None and self.step > 1:
             # What the last fluid step handed over: drag, and the pressure gradient on the solids.
             given = length * self.drag * self.volumes[:, None] * fluid["velocity"]
             given = given - length * ((1 - self.voidage) * self.volumes)[:, None] * fluid["pressure_gradient"]
+        return given
+
+    def law(self):
+        return {"drag_coefficient": self.drag * self.volumes, "drag_source": numpy.zeros((len(self.volumes), 3))}
+
+    def solids(self):
+        cells = len(self.volumes)
+        return {"voidage": numpy.full(cells, self.voidage), "particle_velocity": numpy.zeros((cells, 3))}
+
+    def answer(self, given, arrays):
         solids = (1 - self.voidage) * self.volumes.sum()
         self.say(
             "result",
             {"particle_volume": solids, "particle_count": 0.0, "particle_mass": 2500 * solids, "excess_moved": 0.0, "wall_seconds": 0.0},
-            {
-                "voidage": numpy.full(cells, self.voidage),
-                "drag_coefficient": self.drag * self.volumes,
-                "drag_source": numpy.zeros((cells, 3)),
-                "impulse_given": given,
-                "particle_velocity": numpy.zeros((cells, 3)),
-            },
+            {**arrays, "impulse_given": given},
         )
 
 

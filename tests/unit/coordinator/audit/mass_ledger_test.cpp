@@ -156,6 +156,24 @@ TEST(MassLedger, sees_one_wrong_voidage) {
               error * sample.mesh.cell_volumes[11] / sample.particle_volume, round_off);
 }
 
+TEST(MassLedger, judges_the_voidage_that_was_sent_last_where_the_fluid_is_late) {
+  const Sample sample;
+  std::vector<double> sent = sample.after;
+  for (double& voidage : sent) voidage -= 0.01;  // particles have come in
+  MassWindow window = sample.window();
+  window.voidage_sent = sent;
+  const double volume = 0.3 * 0.2 * 0.8;
+  const MassTotal begin = start_mass(sample.mesh, density, sample.before);
+  // Continuity is that of the fluid's own voidage, the volume that of the one sent.
+  EXPECT_LE(audit_mass(sample.mesh, window, begin).max_cell_residual, round_off);
+  EXPECT_GT(audit_mass(sample.mesh, window, begin).voidage_volume_error, 0.01);
+  window.particle_volume += 0.01 * volume;
+  const MassAudit audit = audit_mass(sample.mesh, window, begin);
+  EXPECT_LE(audit.voidage_volume_error, round_off);
+  EXPECT_NEAR(audit.displaced, density * 0.01 * volume, 10 * round_off * density * volume);
+  EXPECT_EQ(sample.audit().displaced, 0);
+}
+
 TEST(MassLedger, does_not_mistake_the_round_off_of_a_voidage_for_lost_particles) {
   Sample sample;
   std::ranges::fill(sample.flux, 0.0);

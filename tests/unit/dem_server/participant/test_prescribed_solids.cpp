@@ -100,6 +100,36 @@ TEST_F(Solids, take_the_impulse_of_the_fluids_last_step) {
   }
 }
 
+TEST_F(Solids, offer_for_where_they_are_and_take_the_answer_a_window_later_in_parallel) {
+  scene.coupling.scheme = CouplingScheme::parallel;
+  begin();
+  const double cell_volume = 1e-3;
+  for (std::int64_t step = 1; step <= 3; ++step) {
+    const double start = 0.5 * static_cast<double>(step - 1);
+    Fields offer;
+    Fields out;
+    EXPECT_THROW(side.advance({step, start, 0.5}, {}, out, quiet), ProtocolError);
+    side.offer({step, start, 0.5}, fluid(), offer, quiet);
+    side.advance({step, start, 0.5}, {}, out, quiet);
+    const auto drag = offer.scalars(field::drag_coefficient, 10);
+    const auto given = out.vectors(field::impulse_given, 10);
+    for (int cell = 0; cell < 10; ++cell) {
+      EXPECT_DOUBLE_EQ(out.scalars(field::voidage, 10)[cell], voidage(cell, start + 0.5));
+      const double here = cell_volume * beta(voidage(cell, start), 1);
+      EXPECT_NEAR(drag[cell], here, 1e-12 * here);
+      if (step == 1) {
+        EXPECT_EQ(given[cell], Vector3(0, 0, 0));
+        continue;
+      }
+      const double e = voidage(cell, start - 0.5);  // of the offer before
+      const Vector3 expected =
+          0.5 * cell_volume * (beta(e, 1) * velocity[cell] - (1 - e) * gradient[cell]);
+      EXPECT_LE((given[cell] - expected).norm(), 1e-12 * expected.norm()) << cell;
+    }
+    side.commit();
+  }
+}
+
 TEST_F(Solids, repeat_a_window_with_the_same_bits_after_a_rollback) {
   begin();
   Fields first;

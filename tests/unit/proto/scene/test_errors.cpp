@@ -57,7 +57,7 @@ TEST(SceneErrors, wrong_choice_names_the_nearest_and_all) {
   expect_error(with("drag: wen_yu", "drag: gidaspov"), "s.yaml:51:9: interphase.drag: `gidaspov`",
                {"nearest: `gidaspow`", "none, gidaspow, ergun, wen_yu, stokes"});
   expect_error(with("scheme: serial", "scheme: yes"),
-               "s.yaml:8:11: coupling.scheme: `yes` is none of serial", {});
+               "s.yaml:8:11: coupling.scheme: `yes` is none of serial, parallel", {});
   expect_error(with("periodic: [y]", "periodic: [y, y]"),
                "s.yaml:17:19: fluid.mesh.periodic[1]: `y`", {"second time"});
   expect_error(with("periodic: [y]", "periodic: y"),

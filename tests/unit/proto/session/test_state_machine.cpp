@@ -20,6 +20,17 @@ TEST(StateMachine, leads_from_hello_to_a_committed_window) {
   EXPECT_EQ(state, SessionState::committed);
 }
 
+TEST(StateMachine, leads_from_an_offer_to_its_window_or_back) {
+  const auto leads = [](SessionState from, MessageType said) { return next_state(from, said); };
+  EXPECT_EQ(leads(SessionState::committed, offer), SessionState::offered);
+  EXPECT_EQ(leads(SessionState::offered, advance), SessionState::candidate);
+  EXPECT_EQ(leads(SessionState::offered, rollback), SessionState::committed);
+  for (const MessageType said : {offer, commit, snapshot, start})
+    EXPECT_FALSE(leads(SessionState::offered, said).has_value()) << name_of(said);
+  EXPECT_FALSE(leads(SessionState::candidate, offer).has_value());
+  EXPECT_TRUE(is_answered(offer));
+}
+
 TEST(StateMachine, allows_a_commit_only_of_a_candidate) {
   for (const SessionState state :
        {SessionState::greeting, SessionState::welcomed, SessionState::configured,

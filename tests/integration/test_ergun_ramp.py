@@ -1,4 +1,4 @@
-"""configs/ergun_ramp.yaml: 10,000 spheres in a cylinder, settled under a gas whose velocity then rises through that of minimum fluidisation."""
+"""configs/ergun_ramp.yaml: a bed of 10,000 spheres in a cylinder under a gas whose velocity rises through that of minimum fluidisation."""
 
 import math
 import os
@@ -73,27 +73,38 @@ def root(function, value, high):
     return high
 
 
+def carried_by_grid(scene, record):
+    """Force [N] with which the grid at z = 0 holds up the spheres that touch it: Hertz' law of their overlaps."""
+    material = scene["particles"]["materials"]["glass"]
+    modulus = material["youngs_modulus"] / (2 * (1 - material["poisson_ratio"] ** 2))  # of two equal solids, as here sphere and grid
+    radius = record["radius"][:]
+    overlap = numpy.maximum(radius - record["position"][:, 2], 0)
+    return numpy.sum(4 / 3 * modulus * numpy.sqrt(radius) * overlap**1.5)
+
+
 class ErgunRamp(ProgramTest):
     def run_config(self):
         path = SOURCE / "configs/ergun_ramp.yaml"
         done = subprocess.run([COORDINATOR, "run", path, "--out", self.out], capture_output=True, text=True, timeout=1400)
         self.assertEqual(done.returncode, EXIT_DONE, f"{done.stdout}\n{done.stderr}\n{self.log()}")
 
+    def inflow(self, scene, record):
+        """[m/s]"""
+        return numpy.interp(record.attrs["time"], *zip(*scene["fluid"]["boundaries"]["inlet"]["profile"][0]["points"]))
+
     def branches(self, scene, results):
-        """Of each record on the ramp: superficial velocity and pressure drop from the gas below the bed to that above it."""
-        table = scene["fluid"]["boundaries"]["inlet"]["profile"][0]["points"]
-        times, velocities = zip(*table)
+        """Of each record on the ramp: superficial velocity, pressure drop from the gas below the bed to that above it, and the law."""
+        begin = scene["fluid"]["boundaries"]["inlet"]["profile"][0]["points"][0][0]
         z = results["mesh/cell_centres"][:, 2]
         lowest, highest = z < z.min() + 1e-6, z > z.max() - 1e-6
         weights = results["mesh/cell_volumes"][:]
         rows = []
         for record in results["fields"].values():
-            time = record.attrs["time"]
-            if time < times[0]:
+            if record.attrs["time"] < begin:
                 continue
             pressure = record["pressure"][:]
             drop = numpy.average(pressure[lowest], weights=weights[lowest]) - numpy.average(pressure[highest], weights=weights[highest])
-            rows.append((numpy.interp(time, times, velocities), drop, Ergun(scene, results["mesh"], record)))
+            rows.append((self.inflow(scene, record), drop, Ergun(scene, results["mesh"], record)))
         return rows
 
     def judge(self, scene, results):
@@ -111,8 +122,19 @@ class ErgunRamp(ProgramTest):
         line = numpy.polyfit(superficial[fixed], drop[fixed], 1)
         broken = (drop[floating].mean() - line[1]) / line[0]
         ratio, plateau = drop / law, drop / weight
+        carried = numpy.array(
+            [
+                carried_by_grid(scene, record) / (weight * rows[0][2].area)
+                for record in results["particles"].values()
+                if superficial[floating][0] <= self.inflow(scene, record) <= superficial[floating][-1]
+            ]
+        )
         print(f"\nweight over area {weight:.2f} Pa; u_mf {broken:.6f} m/s, by the law {bearing:.6f}: {broken / bearing - 1:+.2%}")
-        for name, values in (("fixed bed over the law", ratio[fixed]), ("plateau over the weight", plateau[floating])):
+        for name, values in (
+            ("fixed bed over the law", ratio[fixed]),
+            ("plateau over the weight", plateau[floating]),
+            ("what the grid carries, over the weight", 1 + carried),
+        ):
             print(f"{name} {values.mean() - 1:+.3%} ({values.min() - 1:+.3%} .. {values.max() - 1:+.3%})")
         for name, bound in (("even flow", even), ("free columns", free)):
             print(f"fixed bed over the law with {name} {(drop / bound)[fixed].mean() - 1:+.3%}")
@@ -120,16 +142,20 @@ class ErgunRamp(ProgramTest):
         if os.environ.get("FLUXPACT_PRINT_ROWS"):
             for values in zip(superficial, drop, law, even, free):
                 print(*(f"{value:.6g}" for value in values))
-        return ratio[fixed], plateau[floating], broken / bearing
+        return ratio[fixed], plateau[floating], carried, broken / bearing
 
     def test_pressure_drop_is_that_of_the_law_and_then_the_weight(self):
         self.run_config()
         for row in self.audit():
             self.assertLess(abs(row["relative_imbalance"]), CONSERVED, row)
         scene = yaml.safe_load((self.out / "scene.yaml").read_text())
-        fixed, plateau, broken = self.judge(scene, self.results())
+        fixed, plateau, carried, broken = self.judge(scene, self.results())
+        # What the numerics leave is 0.1 %; the law itself is known to 10 %.
         self.assertAlmostEqual(fixed.mean(), 1, delta=0.01)
-        self.assertAlmostEqual(plateau.mean(), 1, delta=0.01)
+        # Some 2 % of the weight stays on the grid: beside a flat floor there is more room between the spheres, less drag, and the lowest
+        # ones do not rise. The wall holds back a bed that moves up by some 1 % (without its friction the sum is 1.003).
+        self.assertAlmostEqual(plateau.mean(), 1, delta=0.015)
+        self.assertAlmostEqual(plateau.mean() + carried.mean(), 1, delta=0.015)
         self.assertAlmostEqual(broken, 1, delta=0.03)
 
 

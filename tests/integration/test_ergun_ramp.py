@@ -85,7 +85,9 @@ def carried_by_grid(scene, record):
 class ErgunRamp(ProgramTest):
     def run_config(self):
         path = SOURCE / "configs/ergun_ramp.yaml"
-        done = subprocess.run([COORDINATOR, "run", path, "--out", self.out], capture_output=True, text=True, timeout=1400)
+        threads = ["--set", "particles.numerics.threads=1", "--set", "fluid.numerics.threads=1"]  # other tests run beside it
+        command = [COORDINATOR, "run", path, "--out", self.out, *threads]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=1400)
         self.assertEqual(done.returncode, EXIT_DONE, f"{done.stdout}\n{done.stderr}\n{self.log()}")
 
     def inflow(self, scene, record):

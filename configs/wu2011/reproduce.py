@@ -10,7 +10,7 @@ repeated; --draw runs nothing, and draws as far as the runs have come. Figures (
 --twin transport, a tracer that should stay 1. --tolerances runs the twin at four tolerances of the pressure solver, --choices
 with what the paper leaves open chosen otherwise, both for --until or 0.1 s.
 
-Needs Debian's python3-matplotlib, python3-numpy.
+Needs Debian's python3-matplotlib, python3-numpy, python3-h5py.
 """
 import argparse
 import csv
@@ -20,6 +20,7 @@ import sys
 import time
 from pathlib import Path
 
+import h5py
 import matplotlib
 
 matplotlib.use("Agg")
@@ -126,6 +127,36 @@ def net_inflow(rows):
     return 100 * (rows["mass_in"] - rows["mass_out"]) / rows["mass_in"]
 
 
+def lost_in_cells(directory):
+    """For each record of a legacy run, its time, and the gas that its equation loses in each cell over the inflow [-].
+
+    What a cell gets, gives and stores differs by Σ_f (ε_f − ε_P)(Λ_f − ρ u_P·A_f) from what its legacy balance says: put
+    Σ_f Λ_f = −(ρ/ε_P)(Δε/Δt V + Σ_f (ε_f − ε_P) u_P·A_f) into Σ_f ε_f Λ_f + ρ Δε/Δt V. It needs no more than the record: fluxes and voidage.
+    """
+    rows = read_audit(directory)
+    with h5py.File(directory / "results.h5", "r") as results:
+        mesh = results["mesh"]
+        owner, neighbour, area = mesh["owner"][:].astype(int), mesh["neighbour"][:].astype(int), mesh["face_areas"][:]
+        inner = slice(0, len(neighbour))
+        for record in results["fields"].values():
+            step, voidage = int(record.attrs["step"]), record["voidage"][:]
+            if step == 0:
+                continue
+            face_voidage = voidage[owner]
+            face_voidage[inner] = 0.5 * (voidage[owner[inner]] + voidage[neighbour])
+            interstitial = record["face_flux"][:] / face_voidage
+            # Of a cell of a lattice: the mean of its two faces along each axis.
+            share = 0.5 * (interstitial / (area**2).sum(axis=1))[:, None] * area
+            velocity = numpy.zeros((len(voidage), 3))
+            numpy.add.at(velocity, owner, share)
+            numpy.add.at(velocity, neighbour, share[inner])
+            lost = numpy.zeros(len(voidage))
+            for cells, faces, sign in ((owner, slice(None), -1), (neighbour, inner, 1)):
+                excess = interstitial[faces] - (velocity[cells] * area[faces]).sum(axis=1)
+                numpy.add.at(lost, cells, sign * (face_voidage[faces] - voidage[cells]) * excess)
+            yield step, lost / rows["mass_in"][step - 1]
+
+
 def thinned(values, by):
     """At most 500 values, each `by` of as many windows: the size of a figure does not grow with the run."""
     size = -(-len(values) // 500)
@@ -179,6 +210,14 @@ def tell(name, rows):
             print(f"  tracer {tracer:<18} {low.min():.16g} to {high.max():.16g}; budget {numpy.abs(error).max():.1e}, in any window")
 
 
+def tell_places(run, rows):
+    print("  where it is lost: by the equation, beside the audit [% of the inflow]")
+    for step, lost in lost_in_cells(run.directory):
+        gained = 100 * lost[lost < 0].sum()
+        print(f"    {rows['time'][step - 1]:.3f} s  {100 * lost.sum():.3f} beside {100 * rows['relative_imbalance'][step - 1]:.3f} (cells lose "
+              f"{100 * lost.sum() - gained:.1f}, and make {-gained:.1f})")
+
+
 def tell_cost(name, run, rows):
     parts = {part: rows[f"wall_{part}"] for part in ("dem", "cfd", "exchange")}
     whole = sum(parts.values())
@@ -211,6 +250,8 @@ def compare_methods(options):
             sys.exit(f"{runs[name].directory}: no window yet")
         tell(name, rows)
         tell_cost(name, runs[name], rows)
+    if (runs["legacy"].directory / "results.h5").exists() and not options.draw:
+        tell_places(runs["legacy"], audits["legacy"])
     options.figures.mkdir(parents=True, exist_ok=True)
     title = "half the bed of Wu et al., 23,351 spheres" if options.twin else "the bed of Wu et al., 186,805 spheres"
     draw_net_inflow(audits, title, options.figures / f"{prefix}net_inflow")

@@ -109,9 +109,7 @@ class ProgramTest(unittest.TestCase):
         return path.read_text() if path.exists() else ""
 
     def audit(self, out=None):
-        """audit.csv as a list of rows of numbers."""
-        with open((out or self.out) / "audit.csv", newline="") as file:
-            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        return read_audit(out or self.out)
 
     def results(self, out=None):
         file = h5py.File((out or self.out) / "results.h5", "r")
@@ -128,6 +126,12 @@ class ProgramTest(unittest.TestCase):
                 return
             time.sleep(0.01)
         self.fail(f"no {count} windows within {timeout} s")
+
+
+def read_audit(directory):
+    """audit.csv as a list of rows of numbers."""
+    with open(directory / "audit.csv", newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
 def children(process, name):

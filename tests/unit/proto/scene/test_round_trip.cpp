@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::filesystem::path> configs() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(
            std::filesystem::path(FLUXPACT_SOURCE_DIR) / "configs")) {
     if (entry.path().extension() == ".yaml") {
       paths.push_back(entry.path());

@@ -10,7 +10,6 @@ void SizeLevels::sort_level(const Domain& domain, PositionRows positions, Level&
   level.first = static_cast<int>(order_.size());
   if (levels_.size() == 1) {
     level.grid.sort(domain, cutoff, positions);
-    order_.insert(order_.end(), level.grid.order().begin(), level.grid.order().end());
     return;
   }
   level.positions.clear();
@@ -42,7 +41,7 @@ void SizeLevels::sort(const Domain& domain, double skin, PositionRows positions,
     if (levels_.size() > 1) level.rows.push_back(row);
   }
   order_.clear();
-  order_.reserve(positions.size);
+  if (levels_.size() > 1) order_.reserve(positions.size);
   for (Level& level : levels_) sort_level(domain, positions, level);
 }
 

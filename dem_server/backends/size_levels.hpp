@@ -25,7 +25,9 @@ class SizeLevels {
 
   /// order()[place] is the row of the sphere at a place: the largest class first, each in cell
   /// order.
-  const std::vector<int>& order() const { return order_; }
+  const std::vector<int>& order() const {
+    return levels_.size() == 1 ? levels_.front().grid.order() : order_;
+  }
 
   /// Calls visit(first, last, shift) with ranges of places [first, last) that hold every sphere
   /// whose surface, moved by the shift, may be nearer than the skin to that of this one; the sphere

@@ -169,7 +169,7 @@ using LoadRows =
 /// The springs of a batch, those of each lane at `springs`.
 template <class Real>
 HWY_INLINE SpringLanes<hn::Vec<Lanes<Real>>> load_springs(const ContactModel& model,
-                                                          SpringRow<Real>* const* springs) {
+                                                          const SpringRow<Real>* const* springs) {
   const Lanes<Real> d;
   const auto zero = hn::Zero(d);
   const int rows = spring_rows(model);

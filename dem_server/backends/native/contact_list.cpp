@@ -1,5 +1,7 @@
 #include "dem_server/backends/native/contact_list.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,8 +34,7 @@ struct FormerPair {
 /// The springs of a pair in the old list, or none.
 template <class Real>
 struct Held {
-  const Springs<Real>* springs = nullptr;
-  int contact = 0;
+  const SpringRow<Real>* rows = nullptr;
   bool mirrored = false;  // the partner held it
 };
 
@@ -51,8 +52,8 @@ Held<Real> find_springs(const ContactList<Real>& list, const FormerPair& pair) {
   const int holder = list.blocks.holding(pair.i);
   const int first = list.blocks.first(holder);
   const ContactBlock<Real>& block = list.block[holder];
-  const auto held = [](const Springs<Real>& springs, int contact, bool mirrored) {
-    return contact < 0 ? Held<Real>{} : Held<Real>{&springs, contact, mirrored};
+  const auto held = [](const PairSprings<Real>& springs, int contact, bool mirrored) {
+    return contact < 0 ? Held<Real>{} : Held<Real>{springs.find(contact), mirrored};
   };
   if (pair.shift != Shift::none) {
     return held(block.image_springs, find_pair(block.image, pair.i - first, pair.j, pair.shift),
@@ -72,7 +73,7 @@ template <class Real, bool turning>
 Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int shift) {
   // Wrapping moved each particle by whole periods; the vector between the two stayed the same.
   std::array<int, 3> periods = Shift::periods(shift);
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; !from.resorting.periods.empty() && axis < 3; ++axis) {
     periods[axis] += from.resorting.periods[i][axis] - from.resorting.periods[j][axis];
     if (periods[axis] < -1 || periods[axis] > 1) return {};  // no neighbours before
   }
@@ -83,40 +84,40 @@ Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int 
                       {old_i, old_j, Shift::code(periods[0], periods[1], periods[2])});
 }
 
-template <class Real>
-void carry(const Held<Real>& held, int contact, Springs<Real>& springs) {
-  if (held.springs == nullptr) return;
-  if ((held.springs->held[held.contact / 8] >> (held.contact % 8) & 1) == 0) return;
-  springs.carry(*held.springs, held.contact, held.mirrored, contact);
-}
-
-/// Springs of the pairs of a new list; `first` and `base` turn its places into those of all
-/// particles.
+/// Springs of the pairs of a new list, of which about `touching` have some; `first` and `base` turn
+/// its places into those of all particles.
 template <class Real, bool turning>
-void fill_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int first,
-                  int base, Springs<Real>& springs) {
-  springs.reset(static_cast<int>(pairs.size()), from.spring_rows);
+void fill_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int touching,
+                  int first, int base, PairSprings<Real>& springs) {
+  const int count = static_cast<int>(pairs.size());
+  springs.reset(count, from.spring_rows, touching);
   if (from.before == nullptr || from.spring_rows == 0) return;
-  for (int contact = 0; contact < springs.contacts; ++contact) {
+  for (int contact = 0; contact < count; ++contact) {
     const Pair& pair = pairs[contact];
     const Held<Real> held = former_springs(from, first + pair.mine, base + pair.other, pair.shift);
-    carry(held, contact, springs);
+    if (held.rows != nullptr) springs.append(contact, held.rows, held.mirrored);
   }
+  springs.turn();
 }
 
 template <class Real, bool turning>
 void find_pairs(const Sources<Real, turning>& from, int index, const ContactList<Real>& list,
-                ContactBlock<Real>& block) {
+                FoundPairs& found, ContactBlock<Real>& block) {
   const int first = list.blocks.first(index);
   const int last = list.blocks.last(index);
-  block.inner.clear();
-  block.outer.clear();
-  block.image.clear();
+  found.inner.clear();
+  found.outer.clear();
+  found.image.clear();
+  int inner_touching = 0;
+  int outer_touching = 0;
+  int image_touching = 0;
   for (int i = first; i < last; ++i) {
     const Body<Real, turning>& a = from.spheres[i];
     const double reach = a.radius + from.reach;
+    const double touch = a.radius + from.scope.beyond_contact;
     const bool fixed = a.inverse_mass == 0;
-    const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base) {
+    const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base,
+                         int& touching) {
       const Vector3& image = from.shifts[shift];
       for (int j = begin; j < end; ++j) {
         const Body<Real, turning>& b = from.spheres[j];
@@ -124,26 +125,32 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
         const double y = a.position[1] - b.position[1] - image[1];
         const double z = a.position[2] - b.position[2] - image[2];
         const double sum = reach + b.radius;
-        if (x * x + y * y + z * z >= sum * sum || j == i) continue;
+        const double square = x * x + y * y + z * z;
+        if (square >= sum * sum || j == i) continue;
         if (fixed && b.inverse_mass == 0) continue;  // neither would move
         const int law = from.law(list, i, from.material_of_row[list.row[j]]);
         pairs.push_back({j - base, static_cast<std::uint16_t>(i - first),
                          static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
+        if (square < (touch + b.radius) * (touch + b.radius)) ++touching;
       }
     };
     from.levels.visit_near(a.position, a.radius, [&](int begin, int end, int shift) {
       if (shift != Shift::none) {
-        add(begin, end, shift, block.image, 0);
+        add(begin, end, shift, found.image, 0, image_touching);
         return;
       }
-      add(begin, std::min(end, first), shift, block.outer, 0);
-      add(std::max(begin, i + 1), std::min(end, last), shift, block.inner, first);
-      add(std::max(begin, last), end, shift, block.outer, 0);
+      add(begin, std::min(end, first), shift, found.outer, 0, outer_touching);
+      add(std::max(begin, i + 1), std::min(end, last), shift, found.inner, first, inner_touching);
+      add(std::max(begin, last), end, shift, found.outer, 0, outer_touching);
     });
   }
-  fill_springs(from, block.inner, first, first, block.inner_springs);
-  fill_springs(from, block.outer, first, 0, block.outer_springs);
-  fill_springs(from, block.image, first, 0, block.image_springs);
+  assign_with_room(found.inner, block.inner);
+  assign_with_room(found.outer, block.outer);
+  assign_with_room(found.image, block.image);
+  fill_springs(from, block.inner, inner_touching, first, first, block.inner_springs);
+  fill_springs(from, block.outer, outer_touching, first, 0, block.outer_springs);
+  fill_springs(from, block.image, image_touching, first, 0, block.image_springs);
+  find_partners(list.blocks, block);
 }
 
 template <class Real, bool turning>
@@ -159,7 +166,7 @@ void carry_plane_spring(const Sources<Real, turning>& from, int place, int side,
   for (; held != block.planes.end() && held->mine == mine; ++held) {
     if (held->side != side) continue;
     const int at = static_cast<int>(held - block.planes.begin());
-    springs.carry(block.plane_springs, at, false, contact);
+    springs.carry(block.plane_springs, at, contact);
   }
 }
 
@@ -257,7 +264,7 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
     const SurfaceContacts<Real>& held = from.before->block[holder].surfaces;
     const TouchRange range = touches_of(held.touches, old - from.before->blocks.first(holder));
     for (int k = range.first; k < range.last; ++k) {
-      contacts.springs.carry(held.springs, k, false, contact++);
+      contacts.springs.carry(held.springs, k, contact++);
     }
   }
 }
@@ -291,11 +298,23 @@ void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
 
 }  // namespace
 
+template <class Real>
+void find_partners(const Blocks& blocks, ContactBlock<Real>& block) {
+  block.partners.clear();
+  for (const auto* pairs : {&block.outer, &block.image}) {
+    for (const Pair& pair : *pairs) {
+      const int partner = blocks.holding(pair.other);
+      if (std::ranges::find(block.partners, partner) != block.partners.end()) continue;
+      block.partners.push_back(partner);
+    }
+  }
+}
+
 template <class Real, bool turning>
 void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                        const std::vector<int>& material, const SizeLevels& levels,
-                       const Resorting& resorting, const ContactList<Real>* before,
-                       ContactList<Real>& list) {
+                       const Resorting& resorting, ContactList<Real>* before,
+                       std::vector<FoundPairs>& found, ContactList<Real>& list) {
   const Sources<Real, turning> from{scope,
                                     spheres,
                                     material,
@@ -306,10 +325,18 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                                     spring_rows(scope.laws.model()),
                                     scope.skin + scope.beyond_contact};
   list.block.resize(list.blocks.count());
+  found.resize(scope.threads);
   mark_places(from, list);
+  if (before != nullptr) {
+    for (ContactBlock<Real>& block : before->block) {
+      block.inner_springs.number();
+      block.outer_springs.number();
+      block.image_springs.number();
+    }
+  }
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
   for (int b = 0; b < list.blocks.count(); ++b) {
-    find_pairs(from, b, list, list.block[b]);
+    find_pairs(from, b, list, found[omp_get_thread_num()], list.block[b]);
     find_planes(from, b, list, list.block[b]);
     find_surfaces(from, b, list, list.block[b].surfaces);
   }
@@ -318,11 +345,14 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
 #define FLUXPACT_INSTANTIATE(Real, turning)                                               \
   template void make_contact_list<Real, turning>(                                         \
       const ContactScope&, std::span<const Body<Real, turning>>, const std::vector<int>&, \
-      const SizeLevels&, const Resorting&, const ContactList<Real>*, ContactList<Real>&);
+      const SizeLevels&, const Resorting&, ContactList<Real>*, std::vector<FoundPairs>&,  \
+      ContactList<Real>&);
 FLUXPACT_INSTANTIATE(double, false)
 FLUXPACT_INSTANTIATE(double, true)
 FLUXPACT_INSTANTIATE(float, false)
 FLUXPACT_INSTANTIATE(float, true)
 #undef FLUXPACT_INSTANTIATE
+template void find_partners<double>(const Blocks&, ContactBlock<double>&);
+template void find_partners<float>(const Blocks&, ContactBlock<float>&);
 
 }  // namespace fluxpact

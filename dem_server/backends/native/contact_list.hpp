@@ -43,7 +43,9 @@ struct ContactBlock {
   std::vector<Pair> outer;  ///< partner in another block
   std::vector<Pair> image;  ///< across a periodic side
   std::vector<NearPlane> planes;
-  Springs<Real> inner_springs, outer_springs, image_springs, plane_springs;
+  PairSprings<Real> inner_springs, outer_springs, image_springs;
+  Springs<Real> plane_springs;
+  std::vector<int> partners;  ///< other blocks, and itself across a side, whose particles it reads
   SurfaceContacts<Real> surfaces;
 };
 
@@ -78,17 +80,27 @@ struct ContactScope {
 
 /// Where each particle came from when it was sorted anew.
 struct Resorting {
-  std::vector<int> previous;                        ///< its place before; -1: it was not there
-  std::vector<std::array<std::int8_t, 3>> periods;  ///< subtracted from its position to wrap it
+  std::span<const int> previous;  ///< its place before; -1: it was not there
+  /// Subtracted from its position to wrap it; none in a domain that is not periodic.
+  std::span<const std::array<std::int8_t, 3>> periods;
+};
+
+/// The pairs that a thread has just found, before they take no more room than they need.
+struct FoundPairs {
+  std::vector<Pair> inner, outer, image;
 };
 
 /// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already.
 /// `material` of each presented row. Springs of pairs that `before` (the list in the previous
-/// order, or nullptr) holds are carried over.
+/// order, or nullptr) holds are carried over. `found`: room for each thread.
 template <class Real, bool turning>
 void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                        const std::vector<int>& material, const SizeLevels& levels,
-                       const Resorting& resorting, const ContactList<Real>* before,
-                       ContactList<Real>& list);
+                       const Resorting& resorting, ContactList<Real>* before,
+                       std::vector<FoundPairs>& found, ContactList<Real>& list);
+
+/// Fill in whose particles a block reads.
+template <class Real>
+void find_partners(const Blocks& blocks, ContactBlock<Real>& block);
 
 }  // namespace fluxpact

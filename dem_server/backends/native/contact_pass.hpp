@@ -2,12 +2,12 @@
 // its velocities and positions. The hot loop of the whole program; the instruction set is chosen
 // when it runs.
 //
-//   start   half a kick with the loads of the window before, then a drift
+//   start   the state is kept; half a kick with the loads of the window before, then a drift
 //   drift   contacts at the new positions, a whole kick, a drift
 //   settle  contacts, half a kick: positions and velocities are at the same time; loads are kept
 //
-// A block reads the positions and velocities of its neighbours from `now` and writes its own to
-// `next`, so blocks may go in any order and at once.
+// Blocks move in place. The contacts of a block read the positions and velocities of its
+// neighbours, so a block moves once all who read it have their forces (block_turns.hpp).
 #pragma once
 
 #include "dem_server/backends/native/contact_list.hpp"
@@ -38,10 +38,10 @@ struct BlockPass {
   double spring_step = 0;  ///< [s] by which the springs grow
   int first = 0;           ///< particles of the block
   int last = 0;
-  const Body<Real, turning>* now = nullptr;  ///< all particles
-  Body<Real, turning>* next = nullptr;       ///< rows of the block are written
-  Load<Real, turning>* load = nullptr;       ///< start: read; settle: rows of the block are written
-  Load<Real, turning>* sum = nullptr;        ///< room for the loads of a block
+  Body<Real, turning>* bodies = nullptr;     ///< all particles; rows of the block move
+  KeptBody<Real, turning>* kept = nullptr;   ///< start: rows of the block are written
+  KeptLoad<Real, turning>* loads = nullptr;  ///< start: read; settle: rows of the block are written
+  Load<Real, turning>* sum = nullptr;        ///< the loads of the block: summed up, then moved by
   const Drive<Real>* drive = nullptr;
   const ListedAt* listed_at = nullptr;
   const double* origin = nullptr;  ///< [m] of listed_at
@@ -55,11 +55,17 @@ struct BlockPass {
   RootMasses root_masses;
 };
 
-/// Returns true if, after a drift, some particle is farther than `reach` from where the list was
-/// made (or not finite).
-bool pass_block(const BlockPass<double, false>& pass);
-bool pass_block(const BlockPass<double, true>& pass);
-bool pass_block(const BlockPass<float, false>& pass);
-bool pass_block(const BlockPass<float, true>& pass);
+/// Sums up the forces of the contacts of the block (not at the start).
+void sum_contacts(const BlockPass<double, false>& pass);
+void sum_contacts(const BlockPass<double, true>& pass);
+void sum_contacts(const BlockPass<float, false>& pass);
+void sum_contacts(const BlockPass<float, true>& pass);
+
+/// Kick and drift by those sums. Returns true if, after a drift, some particle is farther than
+/// `reach` from where the list was made (or not finite).
+bool move_block(const BlockPass<double, false>& pass);
+bool move_block(const BlockPass<double, true>& pass);
+bool move_block(const BlockPass<float, false>& pass);
+bool move_block(const BlockPass<float, true>& pass);
 
 }  // namespace fluxpact

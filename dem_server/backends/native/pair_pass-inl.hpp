@@ -33,8 +33,8 @@ struct Partners {
 template <class Real, bool turning, Kind kind>
 HWY_INLINE void find_partners(const BlockPass<Real, turning>& pass, const Pair* const* pairs,
                               Partners<Real, turning>& partners) {
-  const Body<Real, turning>* mine = pass.now + pass.first;
-  const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.now;
+  const Body<Real, turning>* mine = pass.bodies + pass.first;
+  const Body<Real, turning>* theirs = kind == Kind::inner ? mine : pass.bodies;
   for (int k = 0; k < width; ++k) {
     partners.a[k] = mine + pairs[k]->mine;
     partners.b[k] = theirs + pairs[k]->other;
@@ -119,7 +119,7 @@ struct PairBatch {
   using V = hn::Vec<Lanes<Real>>;
   int count;  // of pairs; the other lanes repeat the last
   const Pair* pairs[width];
-  SpringRow<Real>* springs[width];
+  const SpringRow<Real>* before[width];  // springs of the sub-step before
   TouchLanes<V> touch;
   RollLanes<Real> roll_a, roll_b;  // with a rolling law
   ForceLanes<V> out;
@@ -129,9 +129,23 @@ struct PairBatch {
 /// and the processor can only look ahead into another if the steps are short.
 inline constexpr int batches_at_once = 4;
 
-/// Room for the places, in a list, of the pairs that touch or are within the reach of the law.
+/// Pairs of a list that touch or are within the reach of the law, on their way to their forces.
 inline constexpr int near_enough = batches_at_once * width;
 inline constexpr int near_room = near_enough + 2 * width;
+struct NearPairs {
+  alignas(64) std::int32_t place[near_room] = {};   // in the list
+  alignas(64) std::int32_t spring[near_room] = {};  // of the sub-step before; -1: none
+  int count = 0;
+  int springs_passed = 0;  // of the sub-step before
+
+  /// The first spring that is still to be read.
+  HWY_INLINE int oldest_spring() const {
+    for (int n = 0; n < count; ++n) {
+      if (spring[n] >= 0) return spring[n];
+    }
+    return springs_passed;
+  }
+};
 using Places = hn::Rebind<std::int32_t, Positions>;
 
 /// For each pattern of bits the places of those that are set, in order.
@@ -149,24 +163,38 @@ inline constexpr BitPlaces bit_places = [] {
   return places;
 }();
 
-/// Springs of contacts that have come apart go back to zero.
+/// (Iota would go through memory.)
+alignas(32) inline constexpr std::int32_t lane_numbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// Which springs of the sub-step before are those of the pairs that are `touching` (bits from place
+/// `at` on). Those of pairs that have come apart are left behind.
 template <class Real>
-HWY_INLINE void release(int at, unsigned near, Springs<Real>& springs) {
-  const unsigned all = ((1U << width) - 1) << (at % 8);
-  const unsigned held = springs.held[at / 8];
-  unsigned gone = held & all & ~(near << (at % 8));
-  springs.held[at / 8] = static_cast<std::uint8_t>((held & ~all) | near << (at % 8));
-  while (gone != 0) {
-    const int contact = at / 8 * 8 + std::countr_zero(gone);
-    std::fill_n(springs.of(contact), springs.rows_each, SpringRow<Real>{});
-    gone &= gone - 1;
+HWY_INLINE void match_springs(int at, unsigned touching, PairSprings<Real>& springs,
+                              NearPairs& near) {
+  constexpr unsigned all = (1U << width) - 1;
+  const int shift = at % 8;
+  std::uint8_t& byte = springs.held(at);
+  const unsigned held = byte >> shift & all;
+  byte = static_cast<std::uint8_t>((byte & ~(all << shift)) | touching << shift);
+  const int first = near.springs_passed;
+  near.springs_passed += std::popcount(held);
+  std::int32_t* spring = near.spring + near.count;
+  if (held == touching) {  // nearly always
+    const Places places;
+    const auto next = hn::Add(hn::Set(places, first), hn::Load(places, lane_numbers));
+    hn::StoreU(next, places, spring);
+    return;
+  }
+  for (unsigned rest = touching; rest != 0; rest &= rest - 1) {
+    const unsigned bit = rest & (0 - rest);
+    *spring++ = (held & bit) != 0 ? first + std::popcount(held & (bit - 1)) : -1;
   }
 }
 
-/// Writes to `near` which of `count` pairs from place `at` on are near, and returns how many.
+/// Adds to `near` which of `count` pairs from place `at` on are near.
 template <class Real, bool turning, Kind kind>
-HWY_INLINE int sift(const BlockPass<Real, turning>& pass, const Pair* const* pairs, int count,
-                    int at, Springs<Real>& springs, std::int32_t* near) {
+HWY_INLINE void sift(const BlockPass<Real, turning>& pass, const Pair* const* pairs, int count,
+                     int at, PairSprings<Real>& springs, NearPairs& near) {
   const Positions d;
   Partners<Real, turning> partners;
   find_partners<Real, turning, kind>(pass, pairs, partners);
@@ -184,9 +212,10 @@ HWY_INLINE int sift(const BlockPass<Real, turning>& pass, const Pair* const* pai
   // (Compress would do, but copies its table to the stack each time.)
   const Places places;
   const auto set = hn::LoadU(hn::Rebind<std::uint8_t, Places>(), bit_places.of[bits]);
-  hn::StoreU(hn::Add(hn::PromoteTo(places, set), hn::Set(places, at)), places, near);
-  if (springs.rows_each > 0) release(at, bits, springs);
-  return std::popcount(bits);
+  hn::StoreU(hn::Add(hn::PromoteTo(places, set), hn::Set(places, at)), places,
+             near.place + near.count);
+  if (springs.rows_each() > 0) match_springs(at, bits, springs, near);
+  near.count += std::popcount(bits);
 }
 
 /// First step: how the partners stand and move to each other.
@@ -219,16 +248,20 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass,
 
 /// Second step: springs and forces.
 template <class Real, bool turning>
-FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass,
+FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, PairSprings<Real>& springs,
                                    PairBatch<Real, turning>& batch) {
   const Lanes<Real> d;
   const ContactModel& model = pass.laws->model;
-  auto spring = load_springs<Real>(model, batch.springs);
+  auto spring = load_springs<Real>(model, batch.before);
   auto out = no_force<Real>();
   contact_force<turning>(d, model, law_of(*pass.laws, [&](int k) { return batch.pairs[k]->law; }),
                          batch.touch, hn::Set(d, static_cast<Real>(pass.spring_step)), spring,
                          hn::FirstN(d, batch.count), out);
-  store_springs<Real>(model, spring, batch.count, batch.springs);
+  if (springs.rows_each() > 0) {
+    SpringRow<Real>* after[width];
+    for (int k = 0; k < width; ++k) after[k] = k < batch.count ? springs.put() : nullptr;
+    store_springs<Real>(model, spring, batch.count, after);
+  }
   batch.out.force = out.force;
   if constexpr (turning) {
     batch.out.lever = out.lever;
@@ -260,69 +293,76 @@ FLUXPACT_CONTACT_STEP void hand_over(const BlockPass<Real, turning>& pass,
   if constexpr (kind == Kind::inner) loads.template add_to<true>(pass.sum, partner);
 }
 
-/// The forces of `count` near pairs, in whole batches; a rest stays, unless it is the `last`, and
-/// is counted.
-template <class Real, bool turning, Kind kind>
-HWY_INLINE int pass_near(const BlockPass<Real, turning>& pass, const std::vector<Pair>& list,
-                         bool last, Springs<Real>& springs, std::int32_t* near, int count) {
-  PairBatch<Real, turning> batches[near_room / width];
-  int full = 0;
-  int at = 0;
-  for (; at + (last ? 1 : width) <= count; at += width) {
-    PairBatch<Real, turning>& batch = batches[full++];
-    batch.count = std::min(width, count - at);
-    for (int k = 0; k < width; ++k) {
-      const int contact = near[at + std::min(k, batch.count - 1)];
-      batch.pairs[k] = list.data() + contact;
-      batch.springs[k] = springs.of(contact);
-    }
-  }
-  for (int b = 0; b < full; ++b) approach<Real, turning, kind>(pass, batches[b]);
-  for (int b = 0; b < full; ++b) respond<Real, turning>(pass, batches[b]);
-  for (int b = 0; b < full; ++b) hand_over<Real, turning, kind>(pass, batches[b]);
-  const Places places;  // the rest is less than a batch
-  if (at < count) hn::StoreU(hn::LoadU(places, near + at), places, near);
-  return std::max(count - at, 0);
+/// Those that the next pairs to pass will need.
+template <class Real>
+HWY_INLINE void fetch_springs(const PairSprings<Real>& springs, int first) {
+  constexpr int springs_a_line = std::max(1, 64 / static_cast<int>(sizeof(SpringRow<Real>)));
+  for (int n = 0; n < near_enough; n += springs_a_line) hwy::Prefetch(springs.before(first + n));
 }
 
-/// Partners and springs of a batch that comes later.
+/// The forces of near pairs, in whole batches; a rest stays, unless it is the `last`.
+template <class Real, bool turning, Kind kind>
+HWY_INLINE void pass_near(const BlockPass<Real, turning>& pass, const std::vector<Pair>& list,
+                          bool last, PairSprings<Real>& springs, NearPairs& near) {
+  PairBatch<Real, turning> batches[near_room / width];
+  const bool remembers = springs.rows_each() > 0;
+  if (remembers) springs.make_room(near.count, near.oldest_spring());
+  int full = 0;
+  int at = 0;
+  for (; at + (last ? 1 : width) <= near.count; at += width) {
+    PairBatch<Real, turning>& batch = batches[full++];
+    batch.count = std::min(width, near.count - at);
+    for (int k = 0; k < width; ++k) {
+      const int n = at + std::min(k, batch.count - 1);
+      batch.pairs[k] = list.data() + near.place[n];
+      const int spring = near.spring[n];
+      batch.before[k] = remembers && spring >= 0 ? springs.before(spring) : springs.unstretched();
+    }
+  }
+  if (remembers) fetch_springs(springs, near.springs_passed);
+  for (int b = 0; b < full; ++b) approach<Real, turning, kind>(pass, batches[b]);
+  for (int b = 0; b < full; ++b) respond<Real, turning>(pass, springs, batches[b]);
+  for (int b = 0; b < full; ++b) hand_over<Real, turning, kind>(pass, batches[b]);
+  near.count = std::max(near.count - at, 0);
+  const Places places;  // the rest is less than a batch
+  hn::StoreU(hn::LoadU(places, near.place + at), places, near.place);
+  hn::StoreU(hn::LoadU(places, near.spring + at), places, near.spring);
+}
+
+/// Partners of a batch that comes later.
 template <class Real, bool turning>
-HWY_INLINE void fetch(const Body<Real, turning>* theirs, const std::vector<Pair>& list, int at,
-                      const Springs<Real>& springs) {
+HWY_INLINE void fetch(const Body<Real, turning>* theirs, const std::vector<Pair>& list, int at) {
   for (int k = 0; k < width; ++k) {
     const Body<Real, turning>* partner = theirs + list[at + k].other;
     hwy::Prefetch(partner);
     if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
   }
-  constexpr int rows_a_line = std::max(1, 64 / static_cast<int>(sizeof(SpringRow<Real>)));
-  const SpringRow<Real>* first = springs.of(at);
-  for (int row = 0; row < width * springs.rows_each; row += rows_a_line) hwy::Prefetch(first + row);
 }
 
 /// All pairs of one kind: which of them touch, then their forces. Much of a list does not touch,
 /// the more so the livelier the bed; so registers are full of what does.
 template <class Real, bool turning, Kind kind>
 HWY_INLINE void pass_list(const BlockPass<Real, turning>& pass, const std::vector<Pair>& list,
-                          Springs<Real>& springs) {
-  const Body<Real, turning>* theirs = kind == Kind::inner ? pass.now + pass.first : pass.now;
+                          PairSprings<Real>& springs) {
+  const Body<Real, turning>* theirs = kind == Kind::inner ? pass.bodies + pass.first : pass.bodies;
   const int size = static_cast<int>(list.size());
   const int whole = size / width * width;
-  alignas(64) std::int32_t near[near_room] = {};
-  int count = 0;
+  NearPairs near;
   const Pair* pairs[width];
   for (int at = 0; at < whole; at += width) {
-    fetch(theirs, list, std::min(at + fetch_ahead, whole - width), springs);
+    fetch(theirs, list, std::min(at + fetch_ahead, whole - width));
     for (int k = 0; k < width; ++k) pairs[k] = list.data() + at + k;
-    count += sift<Real, turning, kind>(pass, pairs, width, at, springs, near + count);
-    if (count >= near_enough) {
-      count = pass_near<Real, turning, kind>(pass, list, false, springs, near, count);
+    sift<Real, turning, kind>(pass, pairs, width, at, springs, near);
+    if (near.count >= near_enough) {
+      pass_near<Real, turning, kind>(pass, list, false, springs, near);
     }
   }
   if (whole < size) {  // the last pair again where there is none
     for (int k = 0; k < width; ++k) pairs[k] = list.data() + std::min(whole + k, size - 1);
-    count += sift<Real, turning, kind>(pass, pairs, size - whole, whole, springs, near + count);
+    sift<Real, turning, kind>(pass, pairs, size - whole, whole, springs, near);
   }
-  pass_near<Real, turning, kind>(pass, list, true, springs, near, count);
+  pass_near<Real, turning, kind>(pass, list, true, springs, near);
+  springs.turn();
 }
 
 }  // namespace fluxpact::HWY_NAMESPACE

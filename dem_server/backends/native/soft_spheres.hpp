@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "dem_server/backends/engine_state.hpp"
+#include "dem_server/backends/native/block_turns.hpp"
 #include "dem_server/backends/native/contact_pass.hpp"
 #include "dem_server/backends/native/soundness.hpp"
 #include "dem_server/backends/native/step_limit.hpp"
@@ -21,11 +22,12 @@ namespace fluxpact {
 
 template <class Real>
 struct SavedSprings {
-  Springs<Real> inner, outer, image, plane, surface;
+  PairSprings<Real> inner, outer, image;
+  Springs<Real> plane, surface;
   std::vector<SurfaceTouch> touches;
 };
 
-/// What the places of a buffer of bodies hold.
+/// What the places of the bodies hold once particles have left and entered.
 struct Places {
   std::vector<int> row;       // of the presented state
   std::vector<int> previous;  // the place in the list in use, -1: not in it
@@ -64,7 +66,7 @@ class SoftSpheres final : public ParticleEngine {
 
  private:
   using BodyRow = Body<Real, turning>;
-  using LoadRow = Load<Real, turning>;
+  using LoadRow = KeptLoad<Real, turning>;
   using List = ContactList<Real>;
 
   void name_walls();
@@ -77,16 +79,17 @@ class SoftSpheres final : public ParticleEngine {
   BodyRow body_of(int row) const;
   void tabulate_sides();
   void set_drive(std::span<const Vector3> force);
-  bool sweep(Phase phase, double time_step, double spring_step, int from, int to,
-             HugeVector<LoadRow>& loads);
-  void sort_and_list(int from, int to, const Places& places, bool carry_springs);
+  void plan_turns();
+  void meet(const BlockPass<Real, turning>& pass) const;
+  bool sweep(Phase phase, double time_step, double spring_step);
+  void sort_and_list(const Places* places, bool carry_springs);
   Places take_out(std::span<const int> leaving);
   void put_in(const ParticleState& entering, Places& places);
-  const Places& kept_places();
-  void wrap(HugeVector<BodyRow>& bodies);
-  void check(int bodies, double time_step, int sub_step, int sub_steps) const;
-  void present(int bodies);
+  void wrap();
+  void check(double time_step, int sub_step, int sub_steps) const;
+  void present();
   void save_springs();
+  void bring_back_springs();
   template <class Visit>
   void visit_scene(const Visit& visit) const;
   List restored_list(const StateReader& state, int count) const;
@@ -114,26 +117,24 @@ class SoftSpheres final : public ParticleEngine {
   Sizes sizes_;
 
   ParticleState presented_;
-  std::array<HugeVector<BodyRow>, 3> bodies_;  // committed, and two to go back and forth
-  int committed_ = 0;
-  int candidate_ = 0;
-  HugeVector<LoadRow> loads_;            // of the committed state
-  HugeVector<LoadRow> candidate_loads_;  // of the candidate
-  std::array<List, 3> lists_;            // in use, kept for rollback, being made
+  HugeVector<BodyRow> bodies_;                // of the newest state
+  HugeVector<LoadRow> loads_;                 // of the newest state, between windows
+  HugeVector<KeptBody<Real, turning>> kept_;  // while there is a candidate: the committed state
+  std::array<List, 3> lists_;                 // in use, kept for rollback, being made
   int list_ = 0;
   int committed_list_ = 0;
   std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
   std::optional<BeforeExchange> before_exchange_;
   bool has_candidate_ = false;
   HugeVector<Drive<Real>> drive_;
-  HugeVector<LoadRow> sums_;  // room for each thread
+  BlockTurns turns_;
+  HugeVector<Load<Real, turning>> sums_;  // rooms of each thread
 
   // Kept between rebuilds so that they need no memory of their own each time.
   SizeLevels levels_;
-  Resorting resorting_;
-  HugeVector<Drive<Real>> sorted_drive_;
-  std::vector<std::array<std::int8_t, 3>> sorted_periods_;
-  Places kept_places_;
+  std::vector<std::array<std::int8_t, 3>> periods_;
+  std::vector<bool> moved_;
+  std::vector<FoundPairs> found_pairs_;
   std::int64_t rebuilds_ = 0;
   std::int64_t sub_steps_ = 0;
 };

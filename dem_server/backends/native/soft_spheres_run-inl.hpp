@@ -16,7 +16,7 @@ void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
     const int row = lists_[list_].row[i];
-    const double inverse_mass = static_cast<double>(bodies_[committed_][i].inverse_mass);
+    const double inverse_mass = static_cast<double>(bodies_[i].inverse_mass);
     const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
     const Vector3 drive = fall + force[row] * inverse_mass;
     for (int axis = 0; axis < 3; ++axis) {
@@ -29,19 +29,19 @@ void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
 
 /// One phase of all blocks. True if the list must be made anew.
 template <class Real, bool turning>
-bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spring_step, int from,
-                                       int to, HugeVector<LoadRow>& loads) {
+bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spring_step) {
   List& list = lists_[list_];
   const Blocks& blocks = list.blocks;
-  const int threads = threads_for(blocks);
-  sums_.resize(static_cast<std::size_t>(threads) * blocks.block_size);
+  const int threads = turns_.threads();
+  const auto of_thread = static_cast<std::ptrdiff_t>(turns_.rooms()) * blocks.block_size;
+  sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(threads * of_thread)));
   BlockPass<Real, turning> all;
   all.phase = phase;
   all.time_step = time_step;
   all.spring_step = spring_step;
-  all.now = bodies_[from].data();
-  all.next = bodies_[to].data();
-  all.load = loads.data();
+  all.bodies = bodies_.data();
+  all.kept = kept_.data();
+  all.loads = loads_.data();
   all.drive = drive_.data();
   all.listed_at = list.listed_at.data();
   all.origin = list.origin.data();
@@ -51,23 +51,51 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.laws = &law_table_;
   all.beyond_contact = sizes_.beyond_contact;
   all.root_masses = sizes_.root_masses;
-  bool beyond = false;
-#pragma omp parallel for num_threads(threads) schedule(static) reduction(|| : beyond)
-  for (int b = 0; b < blocks.count(); ++b) {
+  const auto pass_of = [&](int thread, int b) {
     BlockPass<Real, turning> pass = all;
     pass.first = blocks.first(b);
     pass.last = blocks.last(b);
-    pass.sum = sums_.data() + static_cast<std::ptrdiff_t>(omp_get_thread_num()) * blocks.block_size;
+    pass.sum = sums_.data() + thread * of_thread +
+               static_cast<std::ptrdiff_t>(turns_.room(b)) * blocks.block_size;
     pass.contacts = &list.block[b];
-    if (!walls_.empty() && phase != Phase::start) {
-      find_touches<Real, turning>(
-          walls_, laws_, surface_materials_, {pass.now + pass.first, pass.now + pass.last},
-          sizes_.beyond_contact, spring_rows(laws_.model()), pass.contacts->surfaces);
+    return pass;
+  };
+  bool beyond = false;
+#pragma omp parallel num_threads(threads) reduction(|| : beyond)
+  {
+#pragma omp for schedule(static, 1)
+    for (int thread = 0; thread < threads; ++thread) {
+      const int first = turns_.first(thread);
+      for (int b = first; b < turns_.first(thread + 1); ++b) {
+        if (phase != Phase::start) meet(pass_of(thread, b));
+        for (int read = first; read <= b; ++read) {
+          if (turns_.last_reader(read) != b) continue;
+          const bool one = move_block(pass_of(thread, read));
+          beyond = beyond || one;
+        }
+      }
     }
-    const bool one = pass_block(pass);
-    beyond = beyond || one;
+#pragma omp for schedule(static, 1)
+    for (int thread = 0; thread < threads; ++thread) {
+      for (int b = turns_.first(thread); b < turns_.first(thread + 1); ++b) {
+        if (turns_.last_reader(b) != blocks.count()) continue;
+        const bool one = move_block(pass_of(thread, b));
+        beyond = beyond || one;
+      }
+    }
   }
   return beyond;
+}
+
+/// The forces of the contacts of one block.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::meet(const BlockPass<Real, turning>& pass) const {
+  if (!walls_.empty()) {
+    find_touches<Real, turning>(
+        walls_, laws_, surface_materials_, {pass.bodies + pass.first, pass.bodies + pass.last},
+        sizes_.beyond_contact, spring_rows(laws_.model()), pass.contacts->surfaces);
+  }
+  sum_contacts(pass);
 }
 
 template <class Real, bool turning>
@@ -82,59 +110,50 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
   check_time_step(sizes_.limit, time_step);
   set_drive(force);
   save_springs();
+  kept_.resize(bodies_.size());
+  plan_turns();
   has_candidate_ = true;
-  int now = (committed_ + 1) % 3;
-  int next = (committed_ + 2) % 3;
-  bodies_[now].resize(bodies_[committed_].size());
-  bodies_[next].resize(bodies_[committed_].size());
-  candidate_loads_.resize(loads_.size());
-  bool beyond = sweep(Phase::start, time_step, 0, committed_, now, loads_);
+  bool beyond = sweep(Phase::start, time_step, 0);
   for (int step = 1; step <= sub_steps; ++step) {
     place_walls(time_ + step * time_step);
     if (beyond || walls_moved_far()) {
-      check(now, time_step, step, sub_steps);
+      check(time_step, step, sub_steps);
       check_surfaces();  // what this list has noted would go with it
-      sort_and_list(now, next, kept_places(), true);
-      std::swap(now, next);
+      sort_and_list(nullptr, true);
+      set_drive(force);
     }
     const Phase phase = step < sub_steps ? Phase::drift : Phase::settle;
-    beyond = sweep(phase, time_step, time_step, now, next, candidate_loads_);
-    std::swap(now, next);
+    beyond = sweep(phase, time_step, time_step);
     if (progress) progress();
   }
-  candidate_ = now;
   window_ = window;
   sub_steps_ += sub_steps;
-  check(candidate_, time_step, sub_steps, sub_steps);
+  check(time_step, sub_steps, sub_steps);
   check_surfaces();
-  present(candidate_);
+  present();
 }
 
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::commit() {
   if (!has_candidate_) return;
   has_candidate_ = false;
-  committed_ = candidate_;
   committed_list_ = list_;
   time_ += window_;
-  std::swap(loads_, candidate_loads_);
   before_exchange_.reset();
 }
 
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::check(int bodies, double time_step, int sub_step,
-                                       int sub_steps) const {
-  const HugeVector<BodyRow>& rows = bodies_[bodies];
+void SoftSpheres<Real, turning>::check(double time_step, int sub_step, int sub_steps) const {
   const std::vector<int>& row_of = lists_[list_].row;
   const int none = presented_.size();
   const bool may_touch = std::isfinite(sizes_.limit.longest);
   int bad = none;
   const auto motion = [&](int i) {
-    const Real* v = rows[i].velocity;
+    const Real* v = bodies_[i].velocity;
     return Motion{
-        Eigen::Map<const Vector3>(rows[i].position),
+        Eigen::Map<const Vector3>(bodies_[i].position),
         Vector3(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])),
-        rows[i].radius};
+        bodies_[i].radius};
   };
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < none; ++i) {
@@ -147,12 +166,11 @@ void SoftSpheres<Real, turning>::check(int bodies, double time_step, int sub_ste
 }
 
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::present(int bodies) {
-  const HugeVector<BodyRow>& rows = bodies_[bodies];
+void SoftSpheres<Real, turning>::present() {
   const List& list = lists_[list_];
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (int i = 0; i < presented_.size(); ++i) {
-    const BodyRow& body = rows[i];
+    const BodyRow& body = bodies_[i];
     const int row = list.row[i];
     const Eigen::Map<const Vector3> position(body.position);
     presented_.position[row] = any_periodic_ ? wrapped(domain_, position) : Vector3(position);
@@ -184,6 +202,21 @@ void SoftSpheres<Real, turning>::save_springs() {
 }
 
 template <class Real, bool turning>
+void SoftSpheres<Real, turning>::bring_back_springs() {
+  for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
+    ContactBlock<Real>& block = lists_[list_].block[b];
+    const SavedSprings<Real>& saved = saved_springs_[b];
+    block.inner_springs.keep(saved.inner);
+    block.outer_springs.keep(saved.outer);
+    block.image_springs.keep(saved.image);
+    block.plane_springs.keep(saved.plane);
+    block.surfaces.springs.keep(saved.surface);
+    block.surfaces.touches = saved.touches;
+    block.surfaces.lost = -1;
+  }
+}
+
+template <class Real, bool turning>
 void SoftSpheres<Real, turning>::rollback() {
   if (!has_candidate_) return;
   has_candidate_ = false;
@@ -193,18 +226,17 @@ void SoftSpheres<Real, turning>::rollback() {
     sizes_ = before_exchange_->sizes;
     before_exchange_.reset();
   }
-  for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
-    ContactBlock<Real>& block = lists_[list_].block[b];
-    block.inner_springs = saved_springs_[b].inner;
-    block.outer_springs = saved_springs_[b].outer;
-    block.image_springs = saved_springs_[b].image;
-    block.plane_springs = saved_springs_[b].plane;
-    block.surfaces.springs = saved_springs_[b].surface;
-    block.surfaces.touches = saved_springs_[b].touches;
-    block.surfaces.lost = -1;
+  bring_back_springs();
+  const std::vector<int>& row_of = lists_[list_].row;
+  bodies_.resize(kept_.size());
+  loads_.resize(kept_.size());
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    bodies_[i] = body_of(row_of[i]);  // a new list may have put others here
+    put_back(kept_[i], bodies_[i]);
+    loads_[i] = kept_[i].load;
   }
-  candidate_ = committed_;
-  present(committed_);
+  present();
 }
 
 template <class Real, bool turning>

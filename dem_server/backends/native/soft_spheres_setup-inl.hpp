@@ -57,22 +57,18 @@ SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, Co
   check_inflow();
   tabulate_sides();
   const int count = presented_.size();
-  Places places;
-  for (int row = 0; row < count; ++row) {
-    bodies_[0].push_back(body_of(row));
-    places.row.push_back(row);
-  }
-  places.previous.assign(count, -1);
-  lists_[list_].row = places.row;
-  check(0, 0, 0, 0);
+  bodies_.reserve(count);
+  for (int row = 0; row < count; ++row) bodies_.push_back(body_of(row));
+  lists_[list_].row.resize(count);
+  std::iota(lists_[list_].row.begin(), lists_[list_].row.end(), 0);
+  check(0, 0, 0);
   loads_.resize(count);
-  bodies_[2].resize(count);
-  sort_and_list(0, 1, places, false);
+  drive_.resize(count);
+  sort_and_list(nullptr, false);
   // Forces of contacts that exist from the start, with their springs at rest.
-  sweep(Phase::settle, 0, 0, 1, 2, loads_);
-  committed_ = candidate_ = 2;
+  sweep(Phase::settle, 0, 0);
   committed_list_ = list_;
-  present(committed_);
+  present();
 }
 
 /// The materials of the surfaces.

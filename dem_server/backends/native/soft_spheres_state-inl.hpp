@@ -106,9 +106,7 @@ void store_kind(const std::vector<ContactBlock<Real>>& blocks, EngineState& stat
   });
   std::vector<double>& springs = state.add_scalars(state_name(Kind::name, "springs"));
   for (const auto& block : blocks) {
-    for (const SpringRow<Real>& row : Kind::springs(block).rows) {
-      for (const Real number : row.number) springs.push_back(static_cast<double>(number));
-    }
+    Kind::springs(block).store(springs);
   }
 }
 
@@ -189,7 +187,7 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
   std::vector<Vector3>& position = state.add_vectors("body_position");
   std::vector<Vector3>& velocity = state.add_vectors("body_velocity");
   std::vector<Vector3>& force = state.add_vectors("contact_force");
-  for (const BodyRow& body : bodies_[committed_]) {
+  for (const BodyRow& body : bodies_) {
     position.push_back(as_vector(body.position));
     velocity.push_back(as_vector(body.velocity));
   }
@@ -197,7 +195,7 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
   if constexpr (turning) {
     std::vector<Vector3>& radius_spin = state.add_vectors("body_radius_spin");
     std::vector<Vector3>& lever = state.add_vectors("contact_lever");
-    for (const BodyRow& body : bodies_[committed_]) {
+    for (const BodyRow& body : bodies_) {
       radius_spin.push_back(as_vector(body.radius_spin));
     }
     for (const LoadRow& load : loads_) lever.push_back(as_vector(load.lever));
@@ -311,6 +309,7 @@ auto SoftSpheres<Real, turning>::restored_list(const StateReader& state, int cou
   visit_kinds([&]<class Kind>(Kind) {
     restore_kind<Kind>(state, spring_rows(laws_.model()), limits, list.block);
   });
+  for (ContactBlock<Real>& block : list.block) find_partners(list.blocks, block);
   restore_surfaces(state, laws_.walls(), walls_.element_codes(), limits, list.block);
   for (std::size_t i = 0; i < rows; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -350,11 +349,10 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
     sizes_ = own_sizes;
     throw;
   }
-  HugeVector<BodyRow>& bodies = bodies_[committed_];
-  bodies.resize(rows);
+  bodies_.resize(rows);
   loads_.assign(rows, LoadRow{});
   for (std::size_t i = 0; i < rows; ++i) {
-    BodyRow& body = bodies[i] = body_of(list.row[i]);
+    BodyRow& body = bodies_[i] = body_of(list.row[i]);
     list.listed_at[i].offset[3] = static_cast<float>(body.radius);
     for (int axis = 0; axis < 3; ++axis) {
       body.position[axis] = position[i][axis];
@@ -371,7 +369,7 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
   sub_steps_ = static_cast<std::int64_t>(sub_steps);
   rebuilds_ = static_cast<std::int64_t>(rebuilds);
   place_walls(walls_at);
-  present(committed_);
+  present();
 }
 
 }  // namespace fluxpact

@@ -42,6 +42,63 @@ struct alignas(4 * sizeof(Real)) Load<Real, false> {
   Real force[4];
 };
 
+/// The same between two windows, without the zeros.
+template <class Real, bool turning>
+struct KeptLoad {
+  Real force[3];
+  Real lever[3];
+};
+template <class Real>
+struct KeptLoad<Real, false> {
+  Real force[3];
+};
+
+/// Of a body and its load what changes: the committed state while a window runs.
+template <class Real, bool turning>
+struct KeptBody {
+  double position[3];
+  Real velocity[3];
+  Real radius_spin[3];
+  KeptLoad<Real, turning> load;
+};
+template <class Real>
+struct KeptBody<Real, false> {
+  double position[3];
+  Real velocity[3];
+  KeptLoad<Real, false> load;
+};
+
+template <class Real, bool turning>
+KeptBody<Real, turning> kept(const Body<Real, turning>& body, const KeptLoad<Real, turning>& load) {
+  KeptBody<Real, turning> row;
+  std::copy_n(body.position, 3, row.position);
+  std::copy_n(body.velocity, 3, row.velocity);
+  if constexpr (turning) std::copy_n(body.radius_spin, 3, row.radius_spin);
+  row.load = load;
+  return row;
+}
+/// Back into a body of the same particle.
+template <class Real, bool turning>
+void put_back(const KeptBody<Real, turning>& row, Body<Real, turning>& body) {
+  std::copy_n(row.position, 3, body.position);
+  std::copy_n(row.velocity, 3, body.velocity);
+  if constexpr (turning) std::copy_n(row.radius_spin, 3, body.radius_spin);
+}
+template <class Real, bool turning>
+KeptLoad<Real, turning> kept(const Load<Real, turning>& load) {
+  KeptLoad<Real, turning> row;
+  std::copy_n(load.force, 3, row.force);
+  if constexpr (turning) std::copy_n(load.lever, 3, row.lever);
+  return row;
+}
+template <class Real, bool turning>
+Load<Real, turning> full(const KeptLoad<Real, turning>& row) {
+  Load<Real, turning> load{};
+  std::copy_n(row.force, 3, load.force);
+  if constexpr (turning) std::copy_n(row.lever, 3, load.lever);
+  return load;
+}
+
 /// What drives a particle beside its contacts, constant over a window [m/s²]; the last number is 0.
 template <class Real>
 struct alignas(4 * sizeof(Real)) Drive {

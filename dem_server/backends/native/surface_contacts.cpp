@@ -75,7 +75,7 @@ void find_touches(const Walls& walls, const ContactLaws& laws, std::span<const i
   for (int touch = 0; rows_each > 0 && touch < contacts.springs.contacts; ++touch) {
     const int old = former_touch(contacts.former, contacts.touches[touch]);
     if (old < 0) continue;
-    contacts.springs.carry(contacts.former_springs, old, false, touch);
+    contacts.springs.carry(contacts.former_springs, old, touch);
   }
 }
 

@@ -23,7 +23,7 @@ FLUXPACT_CONTACT_STEP void pass_walls(const BlockPass<Real, turning>& pass,
   using V = hn::Vec<Lanes<Real>>;
   const ContactModel& model = pass.laws->model;
   const Body<Real, turning>* body[width];
-  for (int k = 0; k < width; ++k) body[k] = pass.now + pass.first + contacts[k].mine;
+  for (int k = 0; k < width; ++k) body[k] = pass.bodies + pass.first + contacts[k].mine;
   const auto v = gather_rows(d, [&](int k) { return body[k]->velocity; });
   touch.velocity = {hn::Sub(v.a, wall_velocity.x), hn::Sub(v.b, wall_velocity.y),
                     hn::Sub(v.c, wall_velocity.z)};
@@ -69,7 +69,7 @@ HWY_INLINE void pass_planes(const BlockPass<Real, turning>& pass, const NearPlan
                             int at, Springs<Real>& springs) {
   const Positions dd;
   const Lanes<Real> d;
-  const Body<Real, turning>* mine = pass.now + pass.first;
+  const Body<Real, turning>* mine = pass.bodies + pass.first;
   const auto x = gather_rows(dd, [&](int k) { return mine[near[k].mine].position; });
   const auto plane = gather_rows(dd, [&](int k) { return pass.planes[near[k].side]; });
   const auto height =
@@ -100,7 +100,7 @@ HWY_INLINE void pass_touches(const BlockPass<Real, turning>& pass, const Surface
   const auto normal = gather_rows(d, [&](int k) { return touches[k].normal; });
   const auto velocity = gather_rows(d, [&](int k) { return touches[k].velocity; });
   alignas(64) double radius[width];
-  for (int k = 0; k < width; ++k) radius[k] = pass.now[pass.first + touches[k].mine].radius;
+  for (int k = 0; k < width; ++k) radius[k] = pass.bodies[pass.first + touches[k].mine].radius;
   auto touch = no_touch<Real>();
   touch.overlap = to_real<Real>(hn::Sub(hn::Load(d, radius), normal.d));
   touch.normal = {to_real<Real>(normal.a), to_real<Real>(normal.b), to_real<Real>(normal.c)};

@@ -1,7 +1,5 @@
 // New lists of neighbours need no memory of their own once there were a few, and a particle no more
 // than it must. Alone in its program, since it counts what every `new` takes.
-#include <malloc.h>
-
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -14,19 +12,30 @@ std::atomic<std::size_t> taken = 0;
 std::atomic<std::size_t> bytes_now = 0;
 std::atomic<std::size_t> bytes_at_most = 0;
 
+/// Stands before the memory that was asked for.
+struct alignas(16) Before {
+  void* base;
+  std::size_t bytes;
+};
+static_assert(sizeof(Before) == 16);
+
 void* take(std::size_t bytes, std::size_t alignment) {
   ++taken;
   const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
-  void* const memory = std::aligned_alloc(alignment, whole);
-  if (memory == nullptr) throw std::bad_alloc();
-  bytes_now += malloc_usable_size(memory);
+  void* const base = std::aligned_alloc(alignment, alignment + whole);
+  if (base == nullptr) throw std::bad_alloc();
+  char* const memory = static_cast<char*>(base) + alignment;
+  *reinterpret_cast<Before*>(memory - sizeof(Before)) = {base, bytes};
+  bytes_now += bytes;
   bytes_at_most = std::max(bytes_at_most.load(), bytes_now.load());
   return memory;
 }
 
 void give(void* memory) {
-  if (memory != nullptr) bytes_now -= malloc_usable_size(memory);
-  std::free(memory);
+  if (memory == nullptr) return;
+  const Before before = *reinterpret_cast<Before*>(static_cast<char*>(memory) - sizeof(Before));
+  bytes_now -= before.bytes;
+  std::free(before.base);
 }
 
 }  // namespace

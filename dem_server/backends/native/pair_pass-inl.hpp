@@ -258,8 +258,8 @@ FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, PairSpr
                          batch.touch, hn::Set(d, static_cast<Real>(pass.spring_step)), spring,
                          hn::FirstN(d, batch.count), out);
   if (springs.rows_each() > 0) {
-    SpringRow<Real>* after[width];
-    for (int k = 0; k < width; ++k) after[k] = k < batch.count ? springs.put() : nullptr;
+    SpringRow<Real>* after[width] = {};
+    springs.put(batch.count, after);
     store_springs<Real>(model, spring, batch.count, after);
   }
   batch.out.force = out.force;

@@ -113,8 +113,17 @@ class PairSprings {
   void make_room(int more, int oldest) {
     if (fresh_ + more + count_ - oldest > slots_) grow(more, oldest);
   }
-  /// The next of this sub-step.
-  SpringRow<Real>* put() { return slot(wrapped(first_ + count_) + fresh_++); }
+  /// Where the next `count` of this sub-step go.
+  void put(int count, SpringRow<Real>** rows) {
+    const int place = wrapped(wrapped(first_ + count_) + fresh_);
+    fresh_ += count;
+    if (place + count <= slots_) {  // nearly always
+      SpringRow<Real>* const first = slot(place);
+      for (int n = 0; n < count; ++n) rows[n] = first + std::ptrdiff_t{n} * rows_each_;
+      return;
+    }
+    for (int n = 0; n < count; ++n) rows[n] = slot(place + n);
+  }
   /// The springs of this sub-step are now those before.
   void turn() {
     first_ = wrapped(first_ + count_);
@@ -138,7 +147,8 @@ class PairSprings {
   /// Springs of a pair behind those that have some; `mirrored`: its partner held them.
   void append(int pair, const SpringRow<Real>* rows, bool mirrored) {
     make_room(1, 0);
-    SpringRow<Real>* const to = put();
+    SpringRow<Real>* to = nullptr;
+    put(1, &to);
     for (int r = 0; r < rows_each_; ++r) to[r] = mirrored ? mirrored_row(rows[r]) : rows[r];
     held_[pair / 8] = static_cast<std::uint8_t>(held_[pair / 8] | 1U << (pair % 8));
   }

@@ -23,16 +23,17 @@ def comparison():
 
 class MeasuredBed(ProgramTest):
     START, END = 0.5, 2.0  # [s]
-    # RMS difference from the points, by quantity and height [mm]: that of the whole run (docs/mueller2009) and three standard errors of
-    # a mean over 1.5 s, up to 0.01 by its blocks of time. An even voidage is off by 0.056 and 0.117, a bed at rest by 0.06, 0.11, 0.17 m/s.
+    # RMS difference from the points, by quantity and height [mm]: 0.044, 0.075, 0.022, 0.032 and 0.068 m/s in this span, and three standard
+    # errors of it (0.008, 0.009, 0.004, 0.008, 0.012 m/s, by ten blocks of time), as another processor rounds the way into other bubbles.
+    # A bed at rest is off by 0.19, 0.22, 0.059, 0.108 and 0.175 m/s.
     LIMITS = {
-        ("voidage", 16.4): 0.05,
-        ("voidage", 31.2): 0.1,
-        ("cut", 16.4): 0.05,
-        ("cut", 31.2): 0.1,
-        ("velocity", 15): 0.055,
-        ("velocity", 25): 0.06,
-        ("velocity", 35): 0.075,
+        ("voidage", 16.4): 0.07,
+        ("voidage", 31.2): 0.10,
+        ("cut", 16.4): 0.075,
+        ("cut", 31.2): 0.105,
+        ("velocity", 15): 0.035,
+        ("velocity", 25): 0.056,
+        ("velocity", 35): 0.104,
     }
 
     def test_voidage_and_velocity_are_near_the_measured_ones(self):

@@ -266,7 +266,7 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
       bad = std::min(bad, survey.first_bad);
       continue;
     }
-    if (!offer.known.empty()) add_known(settings, fluid, particles, bulk, rows, offer);
+    if (!offer.known.empty()) add_known(settings, fluid, particles, bulk, past, rows, offer);
     eliminate(settings, fluid, particles, bulk, past, rows, offer);
   }
   survey_ = {outside, bad < count ? bad : -1};
@@ -292,7 +292,7 @@ DragSurvey OfferMaker::find_drag(const ExchangeSettings& settings, const Rows& r
 /// Added mass joins ζ; E.
 void OfferMaker::add_known(const ExchangeSettings& settings, const FluidSeen& fluid,
                            const ParticleState& particles, const ParticleBulk& bulk,
-                           const Rows& rows, Offer& offer) {
+                           const Prediction& past, const Rows& rows, Offer& offer) {
   const bool lifts = settings.saffman_lift || settings.magnus_lift;
   for (int i = rows.first; i < rows.last; ++i) {
     LiftPoint lift;

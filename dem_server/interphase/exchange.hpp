@@ -189,8 +189,8 @@ class OfferMaker {
  private:
   DragSurvey find_drag(const ExchangeSettings& settings, const Rows& rows, Offer& offer);
   void add_known(const ExchangeSettings& settings, const FluidSeen& fluid,
-                 const ParticleState& particles, const ParticleBulk& bulk, const Rows& rows,
-                 Offer& offer);
+                 const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
+                 const Rows& rows, Offer& offer);
   void eliminate(const ExchangeSettings& settings, const FluidSeen& fluid,
                  const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
                  const Rows& rows, Offer& offer) const;

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Judge a run of bed.yaml by the points that Mueller et al. measured.
 
     configs/mueller2009/compare.py RUN [--start 2] [--end 12] [--figures DIRECTORY]

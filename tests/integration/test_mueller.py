@@ -23,17 +23,18 @@ def comparison():
 
 class MeasuredBed(ProgramTest):
     START, END = 0.5, 2.0  # [s]
-    # RMS difference from the points, by quantity and height [mm]: 0.044, 0.075, 0.022, 0.032 and 0.068 m/s in this span, and three standard
-    # errors of it (0.008, 0.009, 0.004, 0.008, 0.012 m/s, by ten blocks of time), as another processor rounds the way into other bubbles.
-    # A bed at rest is off by 0.19, 0.22, 0.059, 0.108 and 0.175 m/s.
+    # RMS difference from the points, by quantity and height [mm]. Seven spans of 1.5 s of the run of 12 s have 0.040, 0.042, 0.064, 0.062, 0.030,
+    # 0.033 and 0.050 m/s in the mean, and standard deviations of 0.006, 0.007, 0.008, 0.009, 0.0075, 0.008 and 0.013 m/s between them: each
+    # processor rounds its way into other bubbles. Four of these above the mean. A bed at rest is off by 0.19 and 0.22 in voidage,
+    # 0.059, 0.108 and 0.175 m/s in velocity.
     LIMITS = {
-        ("voidage", 16.4): 0.07,
-        ("voidage", 31.2): 0.10,
-        ("cut", 16.4): 0.075,
-        ("cut", 31.2): 0.105,
-        ("velocity", 15): 0.035,
-        ("velocity", 25): 0.056,
-        ("velocity", 35): 0.104,
+        ("voidage", 16.4): 0.064,
+        ("cut", 16.4): 0.069,
+        ("voidage", 31.2): 0.097,
+        ("cut", 31.2): 0.097,
+        ("velocity", 15): 0.058,
+        ("velocity", 25): 0.066,
+        ("velocity", 35): 0.103,
     }
 
     def test_voidage_and_velocity_are_near_the_measured_ones(self):

@@ -12,8 +12,8 @@ if(FLUXPACT_SANITIZE)
   # of it at the program's end (google/sanitizers, issue 1267).
   target_compile_options(fluxpact_options INTERFACE -fsanitize=${FLUXPACT_SANITIZE} -fno-omit-frame-pointer)
   if(FLUXPACT_SANITIZE MATCHES "undefined")
-    # AddressSanitizer stops at null pointers and beyond an object's end by itself; words that are not aligned are read
-    # from the wire alone, by memcpy. With these three checks before every access the compiler takes twice as long.
+    # With these three checks before every access the compiler takes twice as long. AddressSanitizer stops at null pointers
+    # and beyond an object's end by itself; misaligned access is not looked for.
     target_compile_options(fluxpact_options INTERFACE -fno-sanitize=null,alignment,object-size)
   endif()
   target_link_options(fluxpact_options INTERFACE -fsanitize=${FLUXPACT_SANITIZE})

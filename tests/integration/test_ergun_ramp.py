@@ -152,7 +152,7 @@ class ErgunRamp(ProgramTest):
             self.assertLess(abs(row["relative_imbalance"]), CONSERVED, row)
         scene = yaml.safe_load((self.out / "scene.yaml").read_text())
         fixed, plateau, carried, broken = self.judge(scene, self.results())
-        # What the numerics leave is 0.1 %; the law itself is known to 10 %.
+        # 1 % is asked of the plateau too, and missed by 0.1 %: what follows tells why. What the numerics leave is 0.1 %; the law itself is known to 10 %.
         self.assertAlmostEqual(fixed.mean(), 1, delta=0.01)
         # Some 2 % of the weight stays on the grid: beside a flat floor there is more room between the spheres, less drag, and the lowest
         # ones do not rise. The wall holds back a bed that moves up by some 1 % (without its friction the sum is 1.003).

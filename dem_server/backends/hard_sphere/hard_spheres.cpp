@@ -207,8 +207,8 @@ void HardSpheres::meet(int sphere, const Event& event, double now) {
   fly(b, now);
   const Vector3 normal = (b.position + shifts_[event.shift] - a.position).normalized();
   const double activity = std::min(stir(sphere, now), stir(event.with, now));
-  Collider one{a.velocity, turning_[sphere].spin, a.reach, a.inverse_mass};
-  Collider other{b.velocity, turning_[event.with].spin, b.reach, b.inverse_mass};
+  Collider one{a.velocity, turning_[sphere].spin, radius_[sphere], a.inverse_mass};
+  Collider other{b.velocity, turning_[event.with].spin, radius_[event.with], b.inverse_mass};
   collide(laws_.of(a.material, b.material), rest(activity, normal, a, b), normal, one, other);
   a.velocity = one.velocity;
   b.velocity = other.velocity;
@@ -226,7 +226,7 @@ void HardSpheres::hit_wall(int sphere, int side, double now) {
   fly(body, now);
   const Vector3 normal = -inward(side) * Vector3::Unit(side / 2);
   const double activity = stir(sphere, now);
-  Collider one{body.velocity, turning_[sphere].spin, body.reach, body.inverse_mass};
+  Collider one{body.velocity, turning_[sphere].spin, radius_[sphere], body.inverse_mass};
   Collider wall{Vector3::Zero(), Vector3::Zero(), 1, 0};
   Body at_rest = body;
   at_rest.velocity = at_rest.acceleration = Vector3::Zero();
@@ -318,7 +318,7 @@ void look_at_walls(const Domain& domain, const Spheres& spheres, int row, Neares
 
 void make_room(const Domain& domain, int first, Spheres& spheres) {
   constexpr double touching = 1e-6;  // nearer than this they have no room
-  constexpr double gap = 1e-4;       // that they get, of the distance at which they touch
+  constexpr double gap = 1e-5;       // that they get, of the distance at which they touch
   const ParticleState& state = spheres.state;
   const int count = state.size();
   spheres.reach.resize(state.id.size());

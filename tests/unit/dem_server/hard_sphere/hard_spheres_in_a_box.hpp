@@ -1,7 +1,11 @@
 // Scenes of a few hard spheres for the tests of the event-driven engine, built in code.
 #pragma once
 
+#include <numbers>
+#include <optional>
+
 #include "dem_server/backends/hard_sphere/hard_sphere_engine.hpp"
+#include "proto/base/errors.hpp"
 #include "tests/unit/dem_server/native/spheres_in_a_box.hpp"
 
 namespace fluxpact {
@@ -36,9 +40,9 @@ inline double mass_of(const ParticleState& state, int row) {
 
 /// Of all free particles.
 struct Sums {
-  double energy = 0;                            ///< kinetic, with that of spin [J]
-  Vector3 momentum = Vector3::Zero();           ///< [N s]
-  Vector3 angular_momentum = Vector3::Zero();   ///< about the origin [N m s]
+  double energy = 0;                           ///< kinetic, with that of spin [J]
+  Vector3 momentum = Vector3::Zero();          ///< [N s]
+  Vector3 angular_momentum = Vector3::Zero();  ///< about the origin [N m s]
 };
 inline Sums sums_of(const ParticleState& state) {
   Sums sums;

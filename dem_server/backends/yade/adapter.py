@@ -140,6 +140,7 @@ class Scene:
         pairs = arrays["contact"].reshape(-1, 2).tolist()
         for (one, other), force, normal in zip(pairs, arrays["shear_force"].tolist(), arrays["normal"].tolist()):
             contact = utils.createInteraction(bodies[one], bodies[other])
+            contact.iterMadeReal = -1  # or the law takes it for a new one, which has no shear force yet
             contact.phys.shearForce = force
             contact.geom.normal = normal
             self.peer.beat()

@@ -1,10 +1,12 @@
 #include "dem_server/backends/yade/yade_process.hpp"
 
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <deque>
 #include <fstream>
@@ -58,7 +60,19 @@ YadeProcess::YadeProcess(const std::filesystem::path& adapter)
                    std::vector<std::string>{adapter.string(), channel_.endpoint(),
                                             std::to_string(getpid()), FLUXPACT_YADE_MODULES},
                    folder_.path / "log");
+  group_ = process_->pid();
   await_hello();
+}
+
+YadeProcess::~YadeProcess() {
+  if (!process_) return;
+  // A copy that holds the committed state ends with its parent, and is ours then. All are of the
+  // group that the first was started in.
+  process_.reset();
+  if (group_ <= 1) return;
+  kill(-group_, SIGKILL);
+  while (waitpid(-group_, nullptr, 0) > 0) {
+  }
 }
 
 void YadeProcess::fail(const std::string& what) const {

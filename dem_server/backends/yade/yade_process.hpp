@@ -16,6 +16,9 @@ class YadeProcess {
   /// Starts YADE with `adapter` and waits until it says hello. Throws SystemError, and what `ask`
   /// throws.
   explicit YadeProcess(const std::filesystem::path& adapter);
+  ~YadeProcess();
+  YadeProcess(const YadeProcess&) = delete;
+  YadeProcess& operator=(const YadeProcess&) = delete;
 
   /// Sends `question` (made by `yade_question`) and waits for the answer; `progress` is called when
   /// YADE gives a sign of life. Throws ProtocolError if YADE ended, was silent for a minute, or
@@ -24,8 +27,6 @@ class YadeProcess {
 
   /// Ends the process; the copy of it that holds the state before the last `run` goes on instead.
   void rollback();
-
-  pid_t pid() const { return process_->pid(); }
 
  private:
   Message wait(const std::string& what, const Progress& progress);
@@ -43,6 +44,7 @@ class YadeProcess {
   PrivateFolder folder_;
   CoordinatorChannel channel_;
   std::optional<Process> process_;
+  pid_t group_ = 0;   ///< of all its processes
   std::string peer_;  ///< routing id of the one that said hello last
   std::int64_t asked_ = 0;
 };

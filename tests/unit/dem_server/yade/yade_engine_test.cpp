@@ -48,7 +48,7 @@ TEST(YadeEngine, gives_a_free_particle_exactly_what_acts_on_it) {
   for (const auto& [force, steps] : {std::pair{Vector3(1e-4, 0, 0), 1},
                                      {Vector3(-3e-4, 2e-4, 1e-4), 7},
                                      {Vector3(0, 0, 0), 3}}) {
-    const double window = 1e-4 * steps;
+    const double window = 1e-5 * steps;
     const Vector3 acceleration = force / mass + scene.scene.gravity;
     x += v * window + 0.5 * acceleration * window * window;
     v += acceleration * window;
@@ -70,7 +70,7 @@ TEST(YadeEngine, lets_particles_leave_and_enter_and_takes_that_back) {
   entering.id = {7};
   const std::vector<Vector3> none(3, Vector3::Zero());
   for (const bool keep : {false, true}) {
-    engine->advance(1e-3, 10, none, {});
+    engine->advance(1e-3, 100, none, {});
     engine->exchange(std::vector{1}, entering);
     EXPECT_EQ(engine->particles().id, (std::vector<std::int64_t>{1, 3, 7}));
     if (keep) {
@@ -81,7 +81,7 @@ TEST(YadeEngine, lets_particles_leave_and_enter_and_takes_that_back) {
       EXPECT_EQ(engine->particles().position, state.position);
     }
   }
-  engine->advance(1e-3, 10, none, {});
+  engine->advance(1e-3, 100, none, {});
   const ParticleState& now = engine->particles();
   const double end = 2e-3 * 0.1;
   EXPECT_NEAR(now.position[0].z(), 0.01 + end, 1e-15);
@@ -114,7 +114,7 @@ TEST(YadeEngine, that_is_killed_is_a_named_error) {
   ASSERT_GT(yade_child(), 0);
   kill(yade_child(), SIGKILL);
   const std::vector<Vector3> none(1, Vector3::Zero());
-  const std::string text = message_of<ProtocolError>([&] { engine->advance(1e-3, 10, none, {}); });
+  const std::string text = message_of<ProtocolError>([&] { engine->advance(1e-3, 100, none, {}); });
   expect_contains(text, "YADE");
   expect_contains(text, "signal 9");
 }

@@ -110,15 +110,17 @@ TEST(YadeImpact, of_some_dozen_spheres_go_as_in_the_native_engine) {
     return worst([&](int i) { return (yade->particles().position[i] - state.position[i]).norm(); });
   };
   go_to(10);  // each has met the floor or others once or twice
-  std::printf("apart %g moved %g\n", apart(), moved());
+  // Few contacts have each changed what follows by what the laws differ in.
+  EXPECT_GT(moved(), 5e-4);
+  EXPECT_LT(apart(), tolerance_of_laws * moved());
   go_to(60);  // and lies still, or nearly so
   const auto mean_height = [&](const ParticleEngine& engine) {
     double sum = 0;
     for (const Vector3& position : engine.particles().position) sum += position.z();
     return sum / 48;
   };
-  std::printf("apart %g moved %g, %g %g\n", apart(), moved(), mean_height(*yade),
-              mean_height(*native));
+  // Which sphere lies where is chance by now; how high they lie on each other is not.
+  EXPECT_NEAR(mean_height(*yade), mean_height(*native), 0.1 * r);
 }
 
 }  // namespace

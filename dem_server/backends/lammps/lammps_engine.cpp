@@ -5,10 +5,13 @@
 #define LMP_UTILS_H
 #define LAMMPS_LIB_MPI
 #include <lammps/fix.h>
+#include <lammps/force.h>
 #include <lammps/lammps.h>
 #include <lammps/library.h>
 #include <lammps/modify.h>
+#include <lammps/neigh_list.h>
 #include <lammps/neighbor.h>
+#include <lammps/pair.h>
 
 #include <algorithm>
 #include <array>
@@ -141,6 +144,12 @@ void LammpsSimulation::take_up(const ParticleState& spheres, const Motions& moti
     if (packed_.empty()) packed_.assign(memories.size() * 16, 0.0);  // it touches nothing
     double* next = packed_.data();
     for (LAMMPS_NS::Fix* memory : memories) next += memory->unpack_exchange(i, next);
+  }
+  // The set-up has matched pairs with what their particles remember, and marked them as done.
+  const LAMMPS_NS::NeighList& list = *library().force->pair->list;
+  for (int k = 0; k < list.inum; ++k) {
+    const int i = list.ilist[k];
+    for (int n = 0; n < list.numneigh[i]; ++n) list.firstneigh[i][n] |= 1 << SBBITS;
   }
   memories.front()->post_neighbor();  // from the particles to the list of pairs
 }

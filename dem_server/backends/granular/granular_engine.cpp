@@ -64,7 +64,7 @@ class GranularEngine final : public ParticleEngine {
   ContactLaws laws_;
   Vector3 gravity_;
   bool flow_;
-  double time_step_;  ///< [s] of a whole window
+  double time_step_;         ///< [s] of a whole window
   ParticleState spheres_;    ///< all, the newest state
   ParticleState presented_;  ///< with several ranks: the share of this one
   std::unique_ptr<Simulation> simulation_;
@@ -88,8 +88,7 @@ void GranularEngine::check_spheres(const ParticleState& spheres) const {
     throw ConfigError("particle {}: {} needs ids from 1 to 2147483646; number the particles anew",
                       id, name_);
   }
-  const double largest =
-      spheres.radius.empty() ? 0 : 2 * *std::ranges::max_element(spheres.radius);
+  const double largest = spheres.radius.empty() ? 0 : 2 * *std::ranges::max_element(spheres.radius);
   check_periods(domain_, largest, largest);
 }
 
@@ -149,8 +148,8 @@ void GranularEngine::collect(Motions& motions) {
         spheres_.id[row], name_, from.x(), from.y(), from.z(), std::ranges::count(row_at_, nullptr),
         count);
   }
-  for (auto* vectors : {&motions.position, &motions.velocity, &motions.spin, &motions.force,
-                        &motions.torque}) {
+  for (auto* vectors :
+       {&motions.position, &motions.velocity, &motions.spin, &motions.force, &motions.torque}) {
     vectors->resize(count);
   }
   motions.contacts.clear();

@@ -1,8 +1,17 @@
 #include "dem_server/backends/granular/ranks.hpp"
 
+#include <cstdlib>
+
 namespace fluxpact {
 
-MpiSession::MpiSession(int* argc, char*** argv) { MPI_Init(argc, argv); }
+MpiSession::MpiSession(int* argc, char*** argv) {
+  // A process that no mpirun started would start a daemon of Open MPI, which outlives it and keeps
+  // the files open that it had; one of its own kind alone has no need of it.
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr) {
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  }
+  MPI_Init(argc, argv);
+}
 MpiSession::~MpiSession() { MPI_Finalize(); }
 
 Ranks::Ranks() {

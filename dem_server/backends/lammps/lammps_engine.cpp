@@ -35,7 +35,8 @@ class LammpsSimulation final : public Simulation {
                               ranks_.all(), nullptr));
     if (!lammps_) throw SystemError("lammps: the library did not start");
     if (ranks_.rank() == 0) library().screen = open_log_stream("lammps");
-    for (const std::string& command : script_.start) lammps_commands_string(lammps_.get(), command.c_str());
+    for (const std::string& command : script_.start)
+      lammps_commands_string(lammps_.get(), command.c_str());
   }
 
   void load(const ParticleState& spheres, const Motions& motions, std::span<const Vector3> force,
@@ -195,8 +196,8 @@ std::unique_ptr<ParticleEngine> make_lammps_engine(const Scene& scene, const Mes
   ContactLaws laws(scene.particles);
   ParticleState spheres = checked_rows(std::move(initial), laws.walls());
   const Domain domain = particle_domain(scene, mesh);
-  auto simulation = std::make_unique<LammpsSimulation>(LammpsScene{
-      domain, laws, scene.scene.gravity, spheres, !scene.particles.inflow.empty()});
+  auto simulation = std::make_unique<LammpsSimulation>(
+      LammpsScene{domain, laws, scene.scene.gravity, spheres, !scene.particles.inflow.empty()});
   return make_granular_engine(scene, mesh, "lammps", std::move(laws), std::move(spheres),
                               std::move(simulation));
 }

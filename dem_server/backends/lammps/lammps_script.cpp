@@ -28,8 +28,8 @@ std::optional<double> one_mass(const LammpsScene& scene) {
 std::string plain_law(const PairLaw& law, double effective_mass) {
   const double normal = law[LawColumn::damping] / std::sqrt(effective_mass);
   return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} 1", law[LawColumn::normal],
-                     law[LawColumn::tangential], normal, law[LawColumn::tangential_damping] * normal,
-                     law[LawColumn::friction]);
+                     law[LawColumn::tangential], normal,
+                     law[LawColumn::tangential_damping] * normal, law[LawColumn::friction]);
 }
 
 /// The law in the words of `pair_style granular`, for any masses and radii.

@@ -92,7 +92,9 @@ TEST(Law, with_friction_differs_by_the_lever) {
 TEST(Law, finds_the_coefficient_that_lammps_turns_into_ours) {
   for (const double share : {0.0, 1e-3, 0.0671, 0.5, 1.2728, 2.0, 2.236}) {
     const double c = tsuji_coefficient(share);
-    const double made = 1.2728 + c * (-4.2783 + c * (11.087 + c * (-22.348 + c * (27.467 + c * (-18.022 + c * 4.8218)))));
+    const double made =
+        1.2728 +
+        c * (-4.2783 + c * (11.087 + c * (-22.348 + c * (27.467 + c * (-18.022 + c * 4.8218)))));
     EXPECT_NEAR(made, share, 1e-13) << share;  // sums of numbers up to 28
   }
 }

@@ -133,7 +133,8 @@ TEST(Trajectories, of_colliding_spheres_are_those_of_the_native_engine) {
     go(*engine, k, k + 10);
     go(*native, k, k + 10);
     const double off = difference(engine->particles(), native->particles());
-    fmt::print("{} after {} windows: velocities differ by {:.2g}\n", under_test().name, k + 10, off);
+    fmt::print("{} after {} windows: velocities differ by {:.2g}\n", under_test().name, k + 10,
+               off);
     EXPECT_LT(off, under_test().trajectory_tolerance);
   }
 }
@@ -194,14 +195,12 @@ TEST(Particles, that_are_lost_are_named) {
   state.velocity[1].z() = 20;
   const auto engine = make_under_test(scene, state);
   const std::vector<Vector3> none(3, Vector3::Zero());
-  const std::string near =
-      message_of<NumericsError>([&] { engine->advance(1e-3, 100, none, {}); });
+  const std::string near = message_of<NumericsError>([&] { engine->advance(1e-3, 100, none, {}); });
   expect_contains(near, "particle 2");
   expect_contains(near, "z_max");
   engine->rollback();
   // Beyond all that the library follows.
-  const std::string far =
-      message_of<NumericsError>([&] { engine->advance(1e-2, 1000, none, {}); });
+  const std::string far = message_of<NumericsError>([&] { engine->advance(1e-2, 1000, none, {}); });
   expect_contains(far, "particle 2");
   engine->rollback();
   EXPECT_EQ(engine->particles().position, state.position);

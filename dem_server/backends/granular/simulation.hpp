@@ -40,6 +40,8 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
+  /// Throws ConfigError for spheres that it was not made for.
+  virtual void check(const ParticleState& spheres) const = 0;
   /// Takes these spheres in place of all it has. All ranks give the same rows; each keeps those in
   /// its part of space. `force` [N]: of the coming window, on each.
   virtual void load(const ParticleState& spheres, const Motions& motions,

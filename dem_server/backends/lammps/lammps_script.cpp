@@ -2,14 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "dem_server/backends/granular/box_command.hpp"
+
 namespace fluxpact {
 namespace {
-
-constexpr double skin_per_diameter = 0.15;
 
 /// Common mass [kg] if all spheres that can meet have one and follow one law.
 std::optional<double> one_mass(const LammpsScene& scene) {
@@ -94,21 +93,6 @@ void add_walls(const LammpsScene& scene, std::optional<double> mass,
   }
 }
 
-/// The box holds whatever touches a wall, and what flies out through an open side in one window.
-std::string box_command(const Domain& domain, double largest, int types) {
-  std::string edges;
-  for (int side = 0; side < 6; ++side) {
-    const double outward = side % 2 == 0 ? -1 : 1;
-    double margin = 0;
-    if (domain.sides[side] == SideKind::wall) margin = 2 * largest;
-    if (domain.sides[side] == SideKind::open) {
-      margin = 2 * largest + domain.length(side / 2);
-    }
-    edges += fmt::format(" {:.17g}", domain.plane(side) + outward * margin);
-  }
-  return fmt::format("region box block{} units box\ncreate_box {} box", edges, types);
-}
-
 }  // namespace
 
 double tsuji_coefficient(double share) {
@@ -132,15 +116,7 @@ int lammps_type(const ParticleState& spheres, int materials, int row) {
 
 LammpsScript lammps_script(const LammpsScene& scene) {
   const int materials = scene.laws.walls();
-  const std::vector<double>& radii = scene.spheres.radius;
-  double largest = 0;
-  double mean = 0;
-  for (const double radius : radii) {
-    largest = std::max(largest, 2 * radius);
-    mean += 2 * radius / static_cast<double>(radii.size());
-  }
-  const Vector3 size = scene.domain.upper - scene.domain.lower;
-  const double skin = mean > 0 ? skin_per_diameter * mean : 1e-3 * size.minCoeff();
+  const BoxCommands box = box_commands(scene.domain, scene.spheres);
   const Vector3& g = scene.gravity;
   const std::optional<double> mass = one_mass(scene);
   LammpsScript script;
@@ -148,14 +124,13 @@ LammpsScript lammps_script(const LammpsScene& scene) {
   start.emplace_back("units si");
   start.emplace_back("atom_style sphere");
   start.emplace_back("atom_modify map yes sort 0 0");  // rows keep their order
-  std::string boundary = "boundary";
-  for (int axis = 0; axis < 3; ++axis) boundary += scene.domain.periodic(axis) ? " p" : " f";
-  start.push_back(boundary);
+  start.push_back(box.boundary);
   start.emplace_back("newton off");
   start.emplace_back("comm_modify vel yes");
-  start.push_back(box_command(scene.domain, largest > 0 ? largest : 10 * skin, 2 * materials));
+  start.push_back(box.region);
+  start.push_back(fmt::format("create_box {} box", 2 * materials));
   add_pairs(scene, mass, start);
-  start.push_back(fmt::format("neighbor {:.17g} bin", skin));
+  start.push_back(box.neighbor);
   start.emplace_back("neigh_modify delay 0 every 1 check yes");
   start.emplace_back("group free empty");
   start.emplace_back("group fixed empty");

@@ -21,7 +21,7 @@ const auto* const registered = ::testing::AddGlobalTestEnvironment(new WithMpi);
 // The moment of touching is known to a sub-step only: γ dt = 1e-3, and twice that for the damped
 // spring along the surface. Law and steps are those of the native engine: round-off (1e-16 in each
 // of 1200 sub-steps), grown by collisions.
-UnderTest under_test() { return {"lammps", 2e-3, 1e-11}; }
+UnderTest under_test() { return {"lammps", 2e-3, 1e-11, 1e-11}; }
 
 std::unique_ptr<ParticleEngine> make_under_test(const Scene& scene, const ParticleState& state) {
   return make_lammps_engine(scene, make_box(scene.fluid.mesh), state);

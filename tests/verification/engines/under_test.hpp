@@ -16,6 +16,8 @@ struct UnderTest {
   double impact_tolerance;
   /// Of velocities against the native engine's, relative to the largest, after a few collisions.
   double trajectory_tolerance;
+  /// The same, of two ways through the same windows that differ by round-off at each step.
+  double round_off;
 };
 
 UnderTest under_test();

@@ -26,7 +26,7 @@ EngineAbilities abilities_of(ParticleBackend backend) {
     case ParticleBackend::hard_sphere:
       return {.any_size = true, .fixed = true, .flow = true};
     case ParticleBackend::lammps:
-      return {.ranks = true};
+      return {.hertz = true, .any_size = true, .fixed = true, .flow = true, .ranks = true};
     case ParticleBackend::liggghts:
       return {.ranks = true};
     case ParticleBackend::yade:

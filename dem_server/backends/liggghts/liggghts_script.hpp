@@ -1,0 +1,39 @@
+// The scene in LIGGGHTS' own commands. Text only.
+//
+// Its dashpots are numbers of a pair of types (γ of γ m* v), and ours depend on the masses, too: a
+// type for each kind of sphere of one material and mass, and one for the walls.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dem_server/backends/domain.hpp"
+#include "dem_server/backends/native/contact_law.hpp"
+#include "dem_server/backends/particle_engine.hpp"
+
+namespace fluxpact {
+
+/// Spheres that have one law with every other kind.
+struct SphereKind {
+  int material = 0;
+  double mass = 0;  ///< [kg]
+  bool fixed = false;
+
+  bool operator==(const SphereKind&) const = default;
+};
+
+/// As many as LIGGGHTS can be told of in one line of its commands.
+inline constexpr int most_kinds = 8;
+
+SphereKind kind_of(const ParticleState& spheres, int row);
+
+/// Adds the kinds of these spheres that are not there yet; false if there were none. Throws
+/// ConfigError for more than most_kinds.
+bool add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds);
+
+/// All that LIGGGHTS is told before the first spheres come.
+std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws& laws,
+                                         const Vector3& gravity, const ParticleState& spheres,
+                                         const std::vector<SphereKind>& kinds);
+
+}  // namespace fluxpact

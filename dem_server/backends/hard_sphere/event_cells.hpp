@@ -72,12 +72,11 @@ void EventCells::visit_near(int sphere, const Visit& visit) const {
       const WrappedCell z = wrapped_cell(k, level.cells[2]);
       for (int j = from[1]; j <= to[1]; ++j) {
         const WrappedCell y = wrapped_cell(j, level.cells[1]);
+        const int* const row = &first_of_cell_[index(level, {0, y.cell, z.cell})];
         for (int i = from[0]; i <= to[0]; ++i) {
           const WrappedCell x = wrapped_cell(i, level.cells[0]);
-          int other = first_of_cell_[index(level, {x.cell, y.cell, z.cell})];
-          if (other < 0) continue;
           const int shift = Shift::code(x.period, y.period, z.period);
-          for (; other >= 0; other = next_[other]) visit(other, shift);
+          for (int other = row[x.cell]; other >= 0; other = next_[other]) visit(other, shift);
         }
       }
     }

@@ -18,7 +18,7 @@ void check_hard_sphere_mesh(const Scene& scene, const Mesh& mesh);
 /// time of a contact (hard_spheres.hpp) alone. Positions and times are exact to round-off whatever
 /// they are.
 ///
-/// Throws ConfigError for particles that are not sound (checked_rows), overlap by more than 2 % of
+/// Throws ConfigError for particles that are not sound (checked_rows), overlap by more than 10 % of
 /// the distance at which they touch, or could meet their own image, and for pairs of materials that
 /// CollisionLaws refuses. `advance` throws NumericsError that names the particle which gets lost
 /// through an open side, collides without end, or has a force that is not finite; `rollback`

@@ -63,12 +63,12 @@ void HardSpheres::load(const Spheres& spheres, std::span<const Vector3> accelera
     body.acceleration = fixed ? Vector3(Vector3::Zero()) : acceleration[row];
     body.time = 0;
     body.reach = spheres.reach[row];
+    body.speed = body.velocity.norm();
     body.pull = body.acceleration.norm();
     body.inverse_mass = fixed ? 0 : 1 / mass;
     body.material = state.material[row];
     body.epoch = 0;
-    body.activity = spheres.activity[row];
-    turning_[place] = {state.spin[row], 0};
+    turning_[place] = {state.spin[row], spheres.activity[row], 0};
     id_[place] = state.id[row];
     position_[place] = body.position;
     radius_[place] = state.radius[row];
@@ -136,18 +136,23 @@ void HardSpheres::find_next(int sphere, double now) {
   const double flown = now - body.time;
   const Here here{body.position + flown * (body.velocity + 0.5 * flown * body.acceleration),
                   body.velocity + flown * body.acceleration};
+  const double own_speed = here.velocity.norm();
   double horizon = window_ - now;
   find_plane(body, here, sphere, horizon, event);
   cells_.visit_near(sphere, [&](int other, int shift) {
-    if (other == sphere) return;
     const Body& its = bodies_[other];
     const double late = now - its.time;
-    Vector3 apart = its.position + late * (its.velocity + 0.5 * late * its.acceleration);
-    apart -= here.position;
-    if (shift != Shift::none) apart += shifts_[shift];
-    const Vector3 velocity = its.velocity + late * its.acceleration - here.velocity;
     const double touch = body.reach + its.reach;
-    // They approach by no more than this.
+    // From where it was last, the two come nearer by no more than this, whatever their directions.
+    const double flown_at_most =
+        (late + horizon) * (its.speed + 0.5 * (late + horizon) * its.pull) +
+        horizon * (own_speed + 0.5 * horizon * body.pull);
+    Vector3 apart = its.position - here.position;
+    if (shift != Shift::none) apart += shifts_[shift];
+    if (apart.squaredNorm() > (touch + flown_at_most) * (touch + flown_at_most)) return;
+    if (other == sphere) return;
+    apart += late * (its.velocity + 0.5 * late * its.acceleration);
+    const Vector3 velocity = its.velocity + late * its.acceleration - here.velocity;
     const double closing = horizon * (velocity.norm() + 0.5 * horizon * (body.pull + its.pull));
     if (apart.squaredNorm() > (touch + closing) * (touch + closing)) return;
     const Separation separation(apart, velocity, its.acceleration - body.acceleration, touch);
@@ -178,26 +183,27 @@ void HardSpheres::fly(Body& body, double now) const {
   const double time = now - body.time;
   body.position += time * (body.velocity + 0.5 * time * body.acceleration);
   body.velocity += time * body.acceleration;
+  body.speed = body.velocity.norm();
   body.time = now;
 }
 
 /// Counts a collision; how many there were of late.
 double HardSpheres::stir(int sphere, double now) {
-  Body& body = bodies_[sphere];
-  if (body.inverse_mass == 0) return never;
-  double& collided = turning_[sphere].collided;
-  body.activity = 1 + body.activity * std::exp((collided - now) / (memory * contact_time_));
-  collided = now;
-  if (body.activity > memory * most_collisions) refuse_endless(sphere);
-  return body.activity;
+  if (bodies_[sphere].inverse_mass == 0) return never;
+  Turning& turning = turning_[sphere];
+  turning.activity =
+      1 + turning.activity * std::exp((turning.collided - now) / (memory * contact_time_));
+  turning.collided = now;
+  if (turning.activity > memory * most_collisions) refuse_endless(sphere);
+  return turning.activity;
 }
 
 /// Two that are pressed against each other part for t_c at least; and their speeds change by more
 /// than rounding, or they would collide again at once.
 Rest HardSpheres::rest(double activity, const Vector3& normal, const Body& a, const Body& b) const {
   const double pressing = normal.dot(a.acceleration - b.acceleration);
-  return {activity > memory, std::max(0.5 * contact_time_ * pressing,
-                                      32 * rounding * (a.velocity.norm() + b.velocity.norm()))};
+  return {activity > memory,
+          std::max(0.5 * contact_time_ * pressing, 32 * rounding * (a.speed + b.speed))};
 }
 
 void HardSpheres::meet(int sphere, const Event& event, double now) {
@@ -212,6 +218,8 @@ void HardSpheres::meet(int sphere, const Event& event, double now) {
   collide(laws_.of(a.material, b.material), rest(activity, normal, a, b), normal, one, other);
   a.velocity = one.velocity;
   b.velocity = other.velocity;
+  a.speed = a.velocity.norm();
+  b.speed = b.velocity.norm();
   turning_[sphere].spin = one.spin;
   turning_[event.with].spin = other.spin;
   ++a.epoch;
@@ -230,9 +238,11 @@ void HardSpheres::hit_wall(int sphere, int side, double now) {
   Collider wall{Vector3::Zero(), Vector3::Zero(), 1, 0};
   Body at_rest = body;
   at_rest.velocity = at_rest.acceleration = Vector3::Zero();
+  at_rest.speed = 0;
   collide(laws_.of(body.material, laws_.walls()), rest(activity, normal, body, at_rest), normal,
           one, wall);
   body.velocity = one.velocity;
+  body.speed = body.velocity.norm();
   turning_[sphere].spin = one.spin;
   ++body.epoch;
   ++collisions_;
@@ -254,13 +264,14 @@ void HardSpheres::store(Spheres& spheres) {
   for (std::size_t place = 0; place < bodies_.size(); ++place) {
     const int row = order_.order()[place];
     Body& body = bodies_[place];
+    const Turning& turning = turning_[place];
     fly(body, window_);
     spheres.state.position[row] = wrapped(domain_, body.position);
     spheres.state.velocity[row] = body.velocity;
-    spheres.state.spin[row] = turning_[place].spin;
+    spheres.state.spin[row] = turning.spin;
     spheres.reach[row] = body.reach;
     spheres.activity[row] =
-        body.activity * std::exp((turning_[place].collided - window_) / (memory * contact_time_));
+        turning.activity * std::exp((turning.collided - window_) / (memory * contact_time_));
   }
 }
 

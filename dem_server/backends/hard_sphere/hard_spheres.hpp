@@ -58,19 +58,22 @@ class HardSpheres {
   std::int64_t events() const { return events_; }
 
  private:
-  /// A sphere at its own time.
+  /// A sphere at its own time. What tells that it is too far away comes first: one cache line.
   struct alignas(64) Body {
-    Vector3 position, velocity, acceleration;
+    Vector3 position;
     double time;   ///< [s] since the window began
     double reach;  ///< [m]
+    double speed;  ///< |velocity|
     double pull;   ///< |acceleration|
     double inverse_mass;
+    Vector3 velocity, acceleration;
     int material;
     std::int32_t epoch;  ///< changes whenever its path does
-    double activity;     ///< at `collided`
   };
+  /// What collisions alone need.
   struct Turning {
     Vector3 spin;
+    double activity;  ///< at the time `collided`
     double collided;  ///< [s] time of the last collision, at first that of the window's begin
   };
   /// Place at a time.
@@ -124,7 +127,7 @@ class HardSpheres {
 };
 
 /// The share by which spheres may overlap at the start [-].
-inline constexpr double most_overlap_of_hard_spheres = 0.02;
+inline constexpr double most_overlap_of_hard_spheres = 0.1;
 
 /// Sets `reach` of the rows from `first` on to their radius, and makes that of all that overlap, or
 /// touch others or a wall, as much smaller as it takes to leave a gap. Throws ConfigError that

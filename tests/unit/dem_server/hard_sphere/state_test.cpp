@@ -152,13 +152,13 @@ TEST(HardSphereRows, that_overlap_are_refused_by_name) {
   Scene scene = dense_scene();
   ParticleState state;
   add_sphere(state, {0.01, 0.01, 0.01}, Vector3::Zero(), 1e-3);
-  add_sphere(state, {0.0119, 0.01, 0.01}, Vector3::Zero(), 1e-3);
+  add_sphere(state, {0.0117, 0.01, 0.01}, Vector3::Zero(), 1e-3);
   const auto message = [&] { return message_of<ConfigError>([&] { make_hard(scene, state); }); };
-  expect_contains(message(), "particle 1 at (0.01, 0.01, 0.01) m overlaps particle 2 by 0.05");
+  expect_contains(message(), "particle 1 at (0.01, 0.01, 0.01) m overlaps particle 2 by 0.15");
   state.position[1] = {0.03, 0.01, 0.01};
   EXPECT_THROW(make_hard(scene, state), NumericsError);  // outside
-  state.position[1] = {0.015, 0.01, 0.9e-3};
-  expect_contains(message(), "particle 2 at (0.015, 0.01, 0.0009) m overlaps the wall z_min");
+  state.position[1] = {0.015, 0.01, 0.85e-3};
+  expect_contains(message(), "particle 2 at (0.015, 0.01, 0.00085) m overlaps the wall z_min by 0.15");
 }
 
 TEST(HardSphereRows, without_room_collide_without_end_and_are_refused_by_name) {

@@ -28,7 +28,7 @@ EngineAbilities abilities_of(ParticleBackend backend) {
     case ParticleBackend::lammps:
       return {.hertz = true, .any_size = true, .fixed = true, .flow = true, .ranks = true};
     case ParticleBackend::liggghts:
-      return {.ranks = true};
+      return {.any_size = true, .fixed = true, .flow = true, .ranks = true};
     case ParticleBackend::yade:
       return {.fixed = true, .flow = true};
     case ParticleBackend::custom:

@@ -62,5 +62,10 @@ class Lammps(EngineTest, ProgramTest):
     push = 1e-8  # the same law and steps: round-off, grown by collisions
 
 
+class Liggghts(EngineTest, ProgramTest):
+    backend = "liggghts"
+    push = 1e-2  # its friction is another where contacts slip
+
+
 if __name__ == "__main__":
     unittest.main()

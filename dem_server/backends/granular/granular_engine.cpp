@@ -88,6 +88,7 @@ void GranularEngine::check_spheres(const ParticleState& spheres) const {
     throw ConfigError("particle {}: {} needs ids from 1 to 2147483646; number the particles anew",
                       id, name_);
   }
+  simulation_->check(spheres);
   const double largest = spheres.radius.empty() ? 0 : 2 * *std::ranges::max_element(spheres.radius);
   check_periods(domain_, largest, largest);
 }

@@ -39,6 +39,7 @@ class LammpsSimulation final : public Simulation {
       lammps_commands_string(lammps_.get(), command.c_str());
   }
 
+  void check(const ParticleState& spheres) const override;
   void load(const ParticleState& spheres, const Motions& motions, std::span<const Vector3> force,
             double time_step) override;
   void run(int steps) override { command(fmt::format("run {} pre no post no", steps)); }
@@ -88,6 +89,20 @@ std::vector<LAMMPS_NS::Fix*> LammpsSimulation::memories() const {
     }
   }
   return found;
+}
+
+void LammpsSimulation::check(const ParticleState& spheres) const {
+  if (!script_.mass) return;
+  for (int row = 0; row < spheres.size(); ++row) {
+    if (!spheres.is_fixed(row) &&
+        sphere_mass(spheres.radius[row], spheres.density[row]) == *script_.mass) {
+      continue;
+    }
+    throw ConfigError(
+        "particle {}: the lammps engine was made for free spheres of {:.6g} kg, which this is not; "
+        "restore with the scene that the state was stored with",
+        spheres.id[row], *script_.mass);
+  }
 }
 
 void LammpsSimulation::create(const ParticleState& spheres, const Motions& motions) {

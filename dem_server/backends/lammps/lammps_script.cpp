@@ -120,6 +120,7 @@ LammpsScript lammps_script(const LammpsScene& scene) {
   const Vector3& g = scene.gravity;
   const std::optional<double> mass = one_mass(scene);
   LammpsScript script;
+  script.mass = mass;
   std::vector<std::string>& start = script.start;
   start.emplace_back("units si");
   start.emplace_back("atom_style sphere");

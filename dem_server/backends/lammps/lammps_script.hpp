@@ -3,6 +3,7 @@
 // Types of atoms: material + 1, and as many more for those that are fixed.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 namespace fluxpact {
 
 struct LammpsScript {
+  std::optional<double> mass;       ///< [kg] of every sphere, if the law is made for one
   std::vector<std::string> start;   ///< once
   std::vector<std::string> groups;  ///< whenever atoms were put in
   /// Whenever atoms were put in, after `groups`: LAMMPS of 2021 turns the coefficient of `damping

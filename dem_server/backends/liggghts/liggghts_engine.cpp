@@ -33,12 +33,9 @@ constexpr int spring_numbers = 3;  // of a contact
 class LiggghtsSimulation final : public Simulation {
  public:
   LiggghtsSimulation(const Domain& domain, const ContactLaws& laws, const Vector3& gravity,
-                     const ParticleState& spheres)
-      : domain_(domain), laws_(laws), gravity_(gravity) {
-    add_kinds(spheres, kinds_);
-    start(spheres);
-  }
+                     const ParticleState& spheres, std::vector<SphereKind> kinds);
 
+  void check(const ParticleState& spheres) const override;
   void load(const ParticleState& spheres, const Motions& motions, std::span<const Vector3> force,
             double time_step) override;
   void run(int steps) override { command(fmt::format("run {} pre no post no", steps)); }
@@ -53,7 +50,6 @@ class LiggghtsSimulation final : public Simulation {
 
   LAMMPS_NS::LAMMPS& library() const { return *static_cast<LAMMPS_NS::LAMMPS*>(liggghts_.get()); }
   void command(const std::string& words) const { lammps_command(liggghts_.get(), words.c_str()); }
-  void start(const ParticleState& spheres);
   void create(const ParticleState& spheres, const Motions& motions) const;
   void take_up(const ParticleState& spheres, const Motions& motions,
                std::span<const Vector3> force) const;
@@ -63,10 +59,9 @@ class LiggghtsSimulation final : public Simulation {
   std::vector<LAMMPS_NS::Fix*> wall_springs() const;
 
   Ranks ranks_;
-  Domain domain_;
-  ContactLaws laws_;
-  Vector3 gravity_;
+  int walls_;
   std::vector<SphereKind> kinds_;
+  std::vector<std::string> groups_;  ///< commands, whenever atoms were put in
   std::unique_ptr<void, Close> liggghts_;
 };
 
@@ -76,17 +71,31 @@ int row_of(const ParticleState& spheres, int tag) {
   return static_cast<int>(std::ranges::lower_bound(spheres.id, tag) - spheres.id.begin());
 }
 
-void LiggghtsSimulation::start(const ParticleState& spheres) {
+LiggghtsSimulation::LiggghtsSimulation(const Domain& domain, const ContactLaws& laws,
+                                       const Vector3& gravity, const ParticleState& spheres,
+                                       std::vector<SphereKind> kinds)
+    : walls_(static_cast<int>(std::ranges::count(domain.sides, SideKind::wall))),
+      kinds_(std::move(kinds)) {
   std::array<const char*, 5> words{"liggghts", "-log", "none", "-screen", "none"};
-  liggghts_.reset();
   void* opened = nullptr;
   lammps_open(static_cast<int>(words.size()), const_cast<char**>(words.data()), ranks_.all(),
               &opened);
   liggghts_.reset(opened);
   if (!liggghts_) throw SystemError("liggghts: the library did not start");
   if (ranks_.rank() == 0) library().screen = open_log_stream("liggghts");
-  for (const std::string& line : liggghts_script(domain_, laws_, gravity_, spheres, kinds_)) {
+  for (const std::string& line : liggghts_script(domain, laws, gravity, spheres, kinds_)) {
     command(line);
+    if (line.starts_with("group ")) groups_.push_back(line);
+  }
+}
+
+void LiggghtsSimulation::check(const ParticleState& spheres) const {
+  for (int row = 0; row < spheres.size(); ++row) {
+    if (std::ranges::find(kinds_, kind_of(spheres, row)) != kinds_.end()) continue;
+    throw ConfigError(
+        "particle {}: the liggghts engine was not made for a sphere of its material, mass and "
+        "freedom; restore with the scene that the state was stored with",
+        spheres.id[row]);
   }
 }
 
@@ -135,13 +144,9 @@ void LiggghtsSimulation::create(const ParticleState& spheres, const Motions& mot
 
 void LiggghtsSimulation::load(const ParticleState& spheres, const Motions& motions,
                               std::span<const Vector3> force, double time_step) {
-  if (add_kinds(spheres, kinds_)) start(spheres);
   command(fmt::format("timestep {:.17g}", time_step));
   create(spheres, motions);
-  // Groups are of the atoms that are there.
-  for (const std::string& line : liggghts_script(domain_, laws_, gravity_, spheres, kinds_)) {
-    if (line.starts_with("group ")) command(line);
-  }
+  for (const std::string& line : groups_) command(line);
   const LAMMPS_NS::Atom& atom = *library().atom;
   auto& fluid = static_cast<LAMMPS_NS::FixExternal&>(*library().modify->find_fix_id("fluid"));
   for (int i = 0; i < atom.nlocal; ++i) {
@@ -191,9 +196,8 @@ bool LiggghtsSimulation::fits(std::span<const double> contacts) const {
   if (contacts.empty()) return true;
   const double partners = contacts.front();
   if (!(partners >= 0 && partners < 0x1p20)) return false;
-  const auto walls = std::ranges::count(domain_.sides, SideKind::wall);
   return contacts.size() == 1 + static_cast<std::size_t>(partners) * (1 + spring_numbers) +
-                                static_cast<std::size_t>(walls) * spring_numbers;
+                                static_cast<std::size_t>(walls_) * spring_numbers;
 }
 
 void LiggghtsSimulation::save(const ParticleState& spheres, std::vector<double>& rows) const {
@@ -231,8 +235,11 @@ std::unique_ptr<ParticleEngine> make_liggghts_engine(const Scene& scene, const M
                                                      ParticleState initial) {
   ContactLaws laws(scene.particles);
   ParticleState spheres = checked_rows(std::move(initial), laws.walls());
-  auto simulation = std::make_unique<LiggghtsSimulation>(particle_domain(scene, mesh), laws,
-                                                         scene.scene.gravity, spheres);
+  std::vector<SphereKind> kinds;
+  add_kinds(spheres, kinds);
+  add_kinds(spheres_to_come(scene), kinds);
+  auto simulation = std::make_unique<LiggghtsSimulation>(
+      particle_domain(scene, mesh), laws, scene.scene.gravity, spheres, std::move(kinds));
   return make_granular_engine(scene, mesh, "liggghts", std::move(laws), std::move(spheres),
                               std::move(simulation));
 }

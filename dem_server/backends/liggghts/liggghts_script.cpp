@@ -85,21 +85,39 @@ SphereKind kind_of(const ParticleState& spheres, int row) {
           spheres.is_fixed(row)};
 }
 
-bool add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds) {
-  const std::size_t before = kinds.size();
+ParticleState spheres_to_come(const Scene& scene) {
+  ParticleState spheres;
+  const auto& materials = scene.particles.materials;
+  for (const InflowSettings& inflow : scene.particles.inflow) {
+    std::vector<double> diameters{inflow.diameter};
+    if (inflow.sizes) {
+      diameters.clear();
+      for (const auto& [diameter, weight] : inflow.sizes->table) diameters.push_back(diameter);
+    }
+    const auto material = materials.find(inflow.material);
+    for (const double diameter : diameters) {
+      spheres.id.push_back(0);
+      spheres.radius.push_back(0.5 * diameter);
+      spheres.density.push_back(material->second.density);
+      spheres.material.push_back(static_cast<int>(std::distance(materials.begin(), material)));
+    }
+  }
+  return spheres;
+}
+
+void add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds) {
   for (int row = 0; row < spheres.size(); ++row) {
     const SphereKind kind = kind_of(spheres, row);
     if (std::ranges::find(kinds, kind) != kinds.end()) continue;
     if (kinds.size() == most_kinds) {
       throw ConfigError(
           "particles.backend: liggghts knows at most {} kinds of spheres (of one material, mass, "
-          "and free or fixed), and particle {} (diameter {:.6g} m) is of another; use fewer "
-          "diameters, or the native or lammps backend",
-          most_kinds, spheres.id[row], 2 * spheres.radius[row]);
+          "and free or fixed), and one of diameter {:.6g} m is of another; use fewer diameters, or "
+          "the native or lammps backend",
+          most_kinds, 2 * spheres.radius[row]);
     }
     kinds.push_back(kind);
   }
-  return kinds.size() > before;
 }
 
 std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws& laws,

@@ -27,9 +27,12 @@ inline constexpr int most_kinds = 8;
 
 SphereKind kind_of(const ParticleState& spheres, int row);
 
-/// Adds the kinds of these spheres that are not there yet; false if there were none. Throws
-/// ConfigError for more than most_kinds.
-bool add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds);
+/// One sphere of each kind that particles.inflow brings.
+ParticleState spheres_to_come(const Scene& scene);
+
+/// Adds the kinds of these spheres that are not there yet. Throws ConfigError for more than
+/// most_kinds.
+void add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds);
 
 /// All that LIGGGHTS is told before the first spheres come.
 std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws& laws,

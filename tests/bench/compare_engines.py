@@ -5,7 +5,7 @@
 
 Each engine runs the whole scene, one after the other. The table has, of the settled bed, its height (twice the mean height of the centres), and
 as means over the time from `--from` on, the pressure drop over the weight per area and the bed's height; then the largest relative imbalance
-of mass, the time on the wall in all and of the particle side, and the largest resident memory of the particle server with its children.
+of mass, the time on the wall in all and of the particle side, and the largest memory of the particle server with its children, five times a second.
 --check: exit code 1 unless the engines with springs agree with the native one: settled height 1 %, pressure drop 2 %, height 5 %, and all
 conserve mass to 1e-12.
 """
@@ -44,15 +44,15 @@ def children_of(parent):
     return found
 
 
-def peak_memory(process):
-    """Bytes: the largest resident set so far."""
+def memory_of(process):
+    """Bytes: its resident pages, each shared one by halves, thirds, ... between those that share it."""
     try:
-        with open(f"/proc/{process}/status", encoding="utf-8") as status:
-            for line in status:
-                if line.startswith("VmHWM:"):
+        with open(f"/proc/{process}/smaps_rollup", encoding="utf-8") as rollup:
+            for line in rollup:
+                if line.startswith("Pss:"):
                     return 1024 * int(line.split()[1])
     except OSError:
-        pass
+        pass  # it has just ended
     return 0
 
 
@@ -68,18 +68,17 @@ def run(build, scene, engine, out, overrides):
     command = [build / "bin/coordinator", "run", scene, "--out", out, "--quiet", "--set", f"particles.backend={engine}"]
     for one in overrides:
         command += ["--set", one]
-    began, memory = time.monotonic(), {}
+    began, memory = time.monotonic(), 0
     out.parent.mkdir(parents=True, exist_ok=True)
     with open(out.parent / f"{engine}.log", "w", encoding="utf-8") as log:
         with subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT) as process:
             while process.poll() is None:
-                for child in children_of(process.pid):
-                    if not is_fluid(child):
-                        memory[child] = max(memory.get(child, 0), peak_memory(child))
-                time.sleep(0.1)
+                now = sum(memory_of(child) for child in children_of(process.pid) if not is_fluid(child))
+                memory = max(memory, now)
+                time.sleep(0.2)
     if process.returncode != 0:
         sys.exit(f"{engine}: exit code {process.returncode}; see {out.parent / (engine + '.log')}")
-    return time.monotonic() - began, sum(memory.values())
+    return time.monotonic() - began, memory
 
 
 def measure(out, begin):

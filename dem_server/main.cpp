@@ -2,6 +2,9 @@
 #include "dem_server/backends/kinematic/kinematic_engine.hpp"
 #include "dem_server/backends/native/native_engine.hpp"
 #include "dem_server/participant/particle_server.hpp"
+#ifdef FLUXPACT_WITH_YADE
+#include "dem_server/backends/yade/yade_engine.hpp"
+#endif
 
 int main(int argc, char** argv) {
   using fluxpact::ParticleBackend;
@@ -9,6 +12,10 @@ int main(int argc, char** argv) {
       argc, argv, "dem_server",
       {{ParticleBackend::native, {}, fluxpact::make_native_engine},
        {ParticleBackend::kinematic, fluxpact::check_kinematic_mesh,
-        fluxpact::make_kinematic_engine}},
+        fluxpact::make_kinematic_engine},
+#ifdef FLUXPACT_WITH_YADE
+       {ParticleBackend::yade, {}, fluxpact::make_yade_engine},
+#endif
+      },
       {{"lammps", "dem_server_lammps"}, {"liggghts", "dem_server_liggghts"}});
 }

@@ -43,6 +43,7 @@ from yade import utils
 from yade.wrapper import *
 
 O = Omega()
+os.rmdir(os.path.dirname(O.tmpFilename()))  # nothing here needs it, and whoever is killed leaves it behind
 BEAT = 0.5  # [s] between signs of life
 DTYPES = {"f64": "<f8", "i32": "<i4"}
 

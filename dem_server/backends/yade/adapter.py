@@ -205,7 +205,9 @@ class Keeper:
             theirs.close()
             self.pid, self.line = pid, ours
             return False
-        ours.close()
+        # What belongs to the other: a copy of a copy of a copy would run out of them.
+        os.closerange(3, theirs.fileno())
+        os.closerange(theirs.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
         end_with(me)
         if not theirs.recv(1):  # closed: forgotten
             os._exit(0)
@@ -243,7 +245,7 @@ def answer(scene, call, body, arrays):
 
 
 def serve():
-    peers = [Peer()]  # the last one; sockets of the process that we were copied from must stay as they are
+    peers = [Peer()]  # the last one; those before it are of processes that we were copied from, and never touched
     scene = Scene(peers[-1])
     keeper = Keeper()
     while True:

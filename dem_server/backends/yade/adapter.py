@@ -37,7 +37,6 @@ end_with(SERVER)
 
 import msgpack
 import numpy
-import yade
 import zmq
 from yade import utils
 from yade.wrapper import *

@@ -69,9 +69,11 @@ YadeProcess::~YadeProcess() {
   // A copy that holds the committed state ends with its parent, and is ours then. All are of the
   // group that the first was started in.
   process_.reset();
-  if (group_ <= 1) return;
-  kill(-group_, SIGKILL);
-  while (waitpid(-group_, nullptr, 0) > 0) {
+  int ended = 0;
+  while ((ended = waitpid(-group_, nullptr, WNOHANG)) >= 0) {
+    if (ended > 0) continue;
+    kill(-group_, SIGKILL);
+    waitpid(-group_, nullptr, 0);
   }
 }
 

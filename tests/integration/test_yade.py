@@ -72,7 +72,10 @@ class Yade(ProgramTest):
         self.wait_for_windows(process, 3)
         (server,) = children(process, "dem_server")
         below = descendants(server)
-        self.assertTrue(below)
+        (adapter,) = children_of(server)
+        endpoint = pathlib.Path(f"/proc/{adapter}/cmdline").read_text().split("\0")[2]
+        folder = pathlib.Path(endpoint.removeprefix("ipc://")).parent
+        self.assertTrue(folder.is_dir())
         kill(server)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, EXIT_PARTICIPANT)
@@ -80,6 +83,7 @@ class Yade(ProgramTest):
         while any(is_alive(pid) for pid in below) and time.monotonic() < deadline:
             time.sleep(0.05)
         self.assertFalse(any(is_alive(pid) for pid in below))
+        self.assertFalse(folder.exists())
 
     def test_refuses_what_it_cannot_do_under_the_key_that_asks_for_it(self):
         def refused(key, change):

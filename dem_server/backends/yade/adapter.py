@@ -11,6 +11,8 @@ window is left, to the bit.
 
 import ctypes
 import os
+import select
+import shutil
 import signal
 import socket
 import sys
@@ -33,7 +35,19 @@ def end_with(parent):
         os._exit(0)
 
 
+def leave_no_folder():
+    """A server that is killed cannot remove the folder of our socket: a small process waits for its end, and does."""
+    watched = os.pidfd_open(SERVER)
+    if os.fork() != 0:
+        os.close(watched)
+        return
+    select.select([watched], [], [])
+    shutil.rmtree(os.path.dirname(ENDPOINT.removeprefix("ipc://")), ignore_errors=True)
+    os._exit(0)
+
+
 end_with(SERVER)
+leave_no_folder()
 
 import msgpack
 import numpy

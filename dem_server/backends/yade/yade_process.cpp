@@ -66,8 +66,8 @@ YadeProcess::YadeProcess(const std::filesystem::path& adapter, Milliseconds sile
 
 YadeProcess::~YadeProcess() {
   if (!process_) return;
-  // A copy that holds the committed state ends with its parent, and is ours then. All are of the
-  // group that the first was started in.
+  // The copy that holds the committed state, and who waits for our end, are ours now. All are of
+  // the group that the first was started in.
   process_.reset();
   int ended = 0;
   while ((ended = waitpid(-group_, nullptr, WNOHANG)) >= 0) {

@@ -18,8 +18,9 @@ namespace fluxpact {
 double self_disturbance(double cells, double reynolds);
 
 /// Width of a `kernel` or `diffusion` in diameters [-] that leaves half a per cent of the slip
-/// unseen, if it is 4 cells or more. C = 4.5 ρ u W² + 14 μ W: within a tenth of what `kernel` was
-/// measured to leave, `diffusion` leaves less.
+/// unseen, if it is 4 cells or more and far from walls. C = 4.5 ρ u W² + 14 μ W: `kernel` was
+/// measured to leave as much within a tenth where flow rules; less in narrow channels, and with
+/// `diffusion`.
 double wide_enough(double reynolds);
 
 /// Particle Reynolds number [-] of a sphere that falls (or rises) through fluid at rest.

@@ -61,6 +61,12 @@ def small_bed():
     }
 
 
+def blown_through(scene):
+    """The same with gas that rises from the start on: the particles feel it in the first window."""
+    scene["fluid"]["initial"] = {"superficial": [0, 0, 1.0]}
+    return scene
+
+
 def legacy(scene):
     scene["coupling"]["continuity"] = "legacy"
     return scene

@@ -7,7 +7,7 @@ import h5py
 import numpy
 import yaml
 
-from programs import EXIT_CONSERVATION, ProgramTest, column_vectors, handovers, legacy, small_bed
+from programs import EXIT_CONSERVATION, ProgramTest, blown_through, column_vectors, handovers, legacy, small_bed
 
 # Round-off of sums over a few hundred faces and cells of quantities that cancel: some 1e-15; 1e-12 is the promise.
 CONSERVED = 1e-12
@@ -57,7 +57,7 @@ class NormalRun(ProgramTest):
             self.assertLess(row["voidage_volume_error"], CONSERVED, row)
 
     def test_hands_the_particles_what_the_fluid_gave_a_window_before(self):
-        self.run_scene(small_bed())
+        self.run_scene(blown_through(small_bed()))
         rows = self.audit()
         lost, given = handovers(rows)
         scale = numpy.abs(lost).max()

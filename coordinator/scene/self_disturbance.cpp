@@ -92,7 +92,7 @@ std::vector<std::string> self_disturbance_warnings(const Scene& scene, const Mes
     if (share > worst.share) worst = {share, diameter, reynolds, entry.material};
   }
   if (worst.share <= worth_it) return {};
-  const double width = wide_enough(worst.reynolds) * worst.diameter;
+  const double width = std::max(wide_enough(worst.reynolds) * worst.diameter, 4 * edge);
   return {fmt::format(
       "interphase.voidage.map '{}' in cells of {:.2g} diameters: a sphere of '{}' slows down the "
       "fluid that it sees, and its drag can be up to {:.2g} % too small (at its terminal slip, Re "

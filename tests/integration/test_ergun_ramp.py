@@ -88,7 +88,9 @@ class ErgunRamp(ProgramTest):
         path = SOURCE / "configs/ergun_ramp.yaml"
         threads = ["--set", "particles.numerics.threads=1", "--set", "fluid.numerics.threads=1"]  # other tests run beside it
         smooth = ["--set", "particles.contact.pairs[1].friction=0"]
-        command = [COORDINATOR, "run", path, "--out", self.out, *threads, *smooth]
+        # Until the first bubble, which throws spheres faster than they move up to then.
+        before = ["--set", "scene.end_time=0.77", "--set", "particles.time_step=1.0e-5"]
+        command = [COORDINATOR, "run", path, "--out", self.out, *threads, *smooth, *before]
         done = subprocess.run(command, capture_output=True, text=True, timeout=1400)
         self.assertEqual(done.returncode, EXIT_DONE, f"{done.stdout}\n{done.stderr}\n{self.log()}")
 
@@ -159,7 +161,7 @@ class ErgunRamp(ProgramTest):
         self.assertAlmostEqual(plateau.mean(), 1, delta=0.01)
         self.assertAlmostEqual(broken, 1, delta=0.03)
         # What the gas does not bear is on the grid, 1.0 %: beside a flat floor there is more room between the spheres, less drag, and the
-        # lowest ones do not rise. The sum is 1.0025, since a bed that expands is being lifted.
+        # lowest ones do not rise. The sum is 1.002, since a bed that expands is being lifted.
         self.assertGreater(carried.mean(), 0)
         self.assertAlmostEqual(plateau.mean() + carried.mean(), 1, delta=0.005)
 

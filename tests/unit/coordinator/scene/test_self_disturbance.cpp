@@ -63,7 +63,7 @@ TEST(SelfDisturbance, is_told_with_its_number_and_what_helps) {
   const Scene scene = few_in_gas(5e-4);
   ASSERT_EQ(warnings(scene).size(), 1U);
   for (const char* part : {"interphase.voidage.map 'exact'", "5 diameters", "'glass'", "7.",
-                           "width", "0.0013 m", "Re = 3.1"}) {
+                           "width: 0.002 m", "Re = 3.1"}) {
     EXPECT_NE(warnings(scene).front().find(part), std::string::npos) << part << warnings(scene)[0];
   }
 }

@@ -68,7 +68,7 @@ class ParticleParticipant : public Participant {
                       const ParticleBulk& bulk, const Progress& progress);
   void map_particles(std::int64_t step);
   void publish_offer(const Offer& offer, Fields& out);
-  void publish_state(std::span<const Vector3> impulse_given, Fields& out);
+  void publish_state(std::span<Vector3> impulse_given, Fields& out);
   void warn_of_drag();
 
   std::string backend_;

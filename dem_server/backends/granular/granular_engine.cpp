@@ -38,6 +38,8 @@ class GranularEngine final : public ParticleEngine {
     return ranks_.size() == 1 ? spheres_ : presented_;
   }
   bool mobile() const override { return true; }
+  const ParticleState& all_particles() const override { return spheres_; }
+  void add_up(std::span<double> values) const override { ranks_.add_up(values); }
   EngineCounters counters() const override { return counters_; }
 
   void advance(double window, int sub_steps, std::span<const Vector3> force,
@@ -206,6 +208,9 @@ void GranularEngine::present(const Motions& motions) {
 
 void GranularEngine::exchange(std::span<const int> leaving, const ParticleState& entering) {
   if (leaving.empty() && entering.size() == 0) return;
+  if (ranks_.size() > 1) {
+    throw ConfigError("particles.ranks: {}: particles come and go on one rank only", ranks_.size());
+  }
   if (!before_exchange_) before_exchange_ = spheres_;
   const ParticleState checked = checked_rows(entering, laws_.walls());
   ParticleState after = spheres_;

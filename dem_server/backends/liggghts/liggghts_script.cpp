@@ -124,11 +124,12 @@ std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws
                                          const Vector3& gravity, const ParticleState& spheres,
                                          const std::vector<SphereKind>& kinds) {
   const TypePairs pairs(laws, kinds);
-  const BoxCommands box = box_commands(domain, spheres);
+  const BoxCommands box = box_commands(domain, gravity, spheres);
   std::vector<std::string> script{"units si",
                                   "atom_style granular",
                                   "atom_modify map hash sort 0 0",  // rows keep their order
                                   box.boundary,
+                                  box.processors,
                                   "newton off",
                                   "communicate single vel yes",
                                   box.region,

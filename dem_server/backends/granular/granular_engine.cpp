@@ -110,6 +110,10 @@ void GranularEngine::advance(double window, int sub_steps, std::span<const Vecto
     if (!forces[row].allFinite()) refuse_force(spheres_.id[row], forces[row]);
   }
   const double time_step = window / sub_steps;
+  if (spheres_.size() == 0) {
+    candidate_ = {{}, {}, {}, {}, {}, {}, {0}};
+    return;
+  }
   simulation_->load(spheres_, committed_, forces, time_step);
   // Fixed pieces, so that who listens does not change what is computed.
   for (int done = 0; done < sub_steps; done += steps_between_signs_of_life) {

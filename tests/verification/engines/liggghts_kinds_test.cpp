@@ -1,4 +1,5 @@
 // LIGGGHTS tells a few kinds of spheres apart: more are refused before the first window.
+#include "proto/base/errors.hpp"
 #include "tests/verification/engines/mixture.hpp"
 
 namespace fluxpact {

@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   using fluxpact::ParticleBackend;
   std::vector<fluxpact::EngineMaker> engines{
       {ParticleBackend::native, {}, fluxpact::make_native_engine},
+      {ParticleBackend::hard_sphere, fluxpact::check_hard_sphere_mesh,
+       fluxpact::make_hard_sphere_engine},
       {ParticleBackend::kinematic, fluxpact::check_kinematic_mesh,
        fluxpact::make_kinematic_engine}};
 #ifdef FLUXPACT_WITH_YADE

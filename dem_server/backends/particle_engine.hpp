@@ -55,6 +55,14 @@ class ParticleEngine {
                        const Progress& progress) = 0;
   virtual EngineCounters counters() const { return {}; }
 
+  // Several processes may share the particles: then `particles()` are those of this one, all
+  // functions are called in each of them alike, and these two tell of the whole.
+
+  /// The newest state of all particles; need not be asked for in all processes.
+  virtual const ParticleState& all_particles() const { return particles(); }
+  /// Adds up the values of all processes, in place, in each of them.
+  virtual void add_up(std::span<double> /*values*/) const {}
+
   /// After `advance`, before `commit`: take the rows `leaving` (ascending, of the candidate state)
   /// out and add the spheres `entering`, whose ids ascend and are larger than any before. Rows that
   /// stay keep their order. Undone by `rollback` with the rest of the window. Throws ConfigError

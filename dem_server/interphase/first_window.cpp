@@ -20,6 +20,10 @@ void first_forces(const ExchangeSettings& settings, const FirstWindow& at, const
   std::vector<double> coefficient(cells);
   std::vector<Vector3> velocity(cells);
   deposit_offer(offer, settings.threads, coefficient, velocity);
+  if (at.add_up) {
+    at.add_up(coefficient);
+    at.add_up(numbers_in(velocity));
+  }
   for (std::size_t c = 0; c < cells; ++c) {
     const double mass = settings.fluid.density * at.voidage[c] * at.cell_volumes[c];
     velocity[c] =

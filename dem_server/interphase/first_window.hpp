@@ -13,6 +13,7 @@
 #pragma once
 
 #include "dem_server/interphase/exchange.hpp"
+#include "dem_server/interphase/voidage.hpp"
 
 namespace fluxpact {
 
@@ -24,6 +25,7 @@ struct FirstWindow {
   const ParticleBulk& bulk;
   std::span<const double> voidage;       ///< one a cell
   std::span<const double> cell_volumes;  ///< [m³]
+  AddUp add_up{};
 };
 
 /// Forces of the first window from the fluid's initial velocity. `offer`, whose weights are those

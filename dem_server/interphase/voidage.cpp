@@ -13,7 +13,7 @@ void particle_volumes(const ParticleState& particles, std::vector<double>& volum
 
 double map_voidage(ParticleCellWeights& weights, std::span<const double> particle_volume,
                    std::span<const double> cell_volumes, ExcessFinder& excess, std::int64_t step,
-                   int threads, std::span<double> voidage) {
+                   int threads, std::span<double> voidage, const AddUp& add_up) {
   const std::span<double> solids = voidage;  // [m³] first
   const int cells = weights.cells();
 #pragma omp parallel for schedule(static) num_threads(threads)
@@ -24,6 +24,7 @@ double map_voidage(ParticleCellWeights& weights, std::span<const double> particl
         [&](int particle) { return particle_volume[particle]; });
     solids[cell] = sum.value();
   }
+  if (add_up) add_up(solids);
   if (weights.diffusion != nullptr) weights.diffusion->spread(solids);
   const double moved = excess.move(step, solids, weights.excess);
 #pragma omp parallel for schedule(static) num_threads(threads)
@@ -33,7 +34,7 @@ double map_voidage(ParticleCellWeights& weights, std::span<const double> particl
 
 void map_velocity(const ParticleCellWeights& weights, std::span<const double> particle_volume,
                   std::span<const Vector3> particle_velocity, int threads,
-                  std::vector<double>& solids, std::span<Vector3> velocity) {
+                  std::vector<double>& solids, std::span<Vector3> velocity, const AddUp& add_up) {
   solids.resize(velocity.size());
   const std::span<double> volumes(solids);
 #pragma omp parallel for schedule(static) num_threads(threads)
@@ -47,6 +48,10 @@ void map_velocity(const ParticleCellWeights& weights, std::span<const double> pa
     });
     volumes[cell] = volume;
     velocity[cell] = moment;
+  }
+  if (add_up) {
+    add_up(volumes);
+    add_up(numbers_in(velocity));
   }
   weights.spread(volumes);
   weights.spread(velocity);

@@ -50,10 +50,10 @@ void LateExchange::find_forces(const Here& here, const Window& window, const Flu
   const ExchangeSettings& settings = here.settings;
   departed_.setZero();
   if (!fluid.solved) {
-    first_forces(
-        settings,
-        {window.step, window.length, here.particles, bulk_, here.voidage, here.cell_volumes}, fluid,
-        maker, view, standing, forces_);
+    first_forces(settings,
+                 {window.step, window.length, here.particles, bulk_, here.voidage,
+                  here.cell_volumes, here.add_up},
+                 fluid, maker, view, standing, forces_);
     deposit_vectors(standing.weights, forces_.impulse, settings.threads, impulse_given_);
     return;
   }

@@ -28,6 +28,7 @@ class LateExchange {
     std::span<const double> voidage;       ///< of their positions, one a cell
     std::span<const double> cell_volumes;  ///< [m³]
     bool rows_change;                      ///< whether particles can come in or leave
+    AddUp add_up{};
   };
 
   /// Forget everything: nothing was offered yet.

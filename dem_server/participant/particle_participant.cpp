@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -129,9 +130,10 @@ void ParticleParticipant::advance_and_offer(const Window& window, const Fields& 
   measure_bulk(engine_->particles(), bulk_);
   if (first) {
     map_voidage(committed_.weights, bulk_.volume, cell_volumes_, *excess_, 0, settings_.threads,
-                voidage_);  // of time 0, also if the window is repeated
+                voidage_, add_up());  // of time 0, also if the window is repeated
     first_forces(settings_,
-                 {window.step, window.length, engine_->particles(), bulk_, voidage_, cell_volumes_},
+                 {window.step, window.length, engine_->particles(), bulk_, voidage_, cell_volumes_,
+                  add_up()},
                  fluid, offer_maker_, fluid_view_, committed_, forces_);
   } else {
     window_forces(settings_, committed_, fluid_view_.of(fluid, committed_.weights),
@@ -159,9 +161,9 @@ void ParticleParticipant::offer(const Window& window, const Fields& in, Fields& 
   const auto began = SteadyClock::now();
   if (!late_) Participant::offer(window, in, out, progress);
   require_settled("make an offer for", window.step);
-  late_->offer(
-      {settings_, engine_->particles(), late_->voidage(), cell_volumes_, flow_.has_value()}, window,
-      in, offer_maker_, fluid_view_, committed_);
+  late_->offer({settings_, engine_->particles(), late_->voidage(), cell_volumes_, flow_.has_value(),
+                add_up()},
+               window, in, offer_maker_, fluid_view_, committed_);
   publish_offer(committed_, out,
                 late_->lends() ? late_->impulse_given() : std::span<const Vector3>{});
   out.add_number(field::wall_seconds, seconds_since(began));
@@ -176,7 +178,8 @@ void ParticleParticipant::advance_under_offer(const Window& window, Fields& out,
         window.step);
   }
   move_particles(window, late_->force(), late_->bulk(), progress);
-  publish_state(late_->impulse_given(), out);
+  impulse_given_.assign(late_->impulse_given().begin(), late_->impulse_given().end());
+  publish_state(impulse_given_, out);
 }
 
 /// The engine's sub-steps, who leaves and comes in, and the map of the new positions. `bulk`: of
@@ -189,14 +192,18 @@ void ParticleParticipant::move_particles(const Window& window, std::span<const V
   map_particles(window.step);
 }
 
+AddUp ParticleParticipant::add_up() const {
+  return [this](std::span<double> values) { engine_->add_up(values); };
+}
+
 void ParticleParticipant::map_particles(std::int64_t step) {
   const ParticleState& particles = engine_->particles();
   measure_bulk(particles, bulk_);
   builder_->build(particles, step, candidate_.weights);
   excess_moved_ = map_voidage(candidate_.weights, bulk_.volume, cell_volumes_, *excess_, step,
-                              settings_.threads, voidage_);
+                              settings_.threads, voidage_, add_up());
   map_velocity(candidate_.weights, bulk_.volume, particles.velocity, settings_.threads,
-               cell_solids_, particle_velocity_);
+               cell_solids_, particle_velocity_, add_up());
 }
 
 /// `lent`: impulse that the particles have before the fluid gave it [N s], one row a cell.
@@ -204,25 +211,32 @@ void ParticleParticipant::publish_offer(const Offer& offer, Fields& out,
                                         std::span<const Vector3> lent) {
   deposit_offer(offer, settings_.threads, drag_coefficient_, drag_source_);
   if (!lent.empty()) take_back(lent, offer.window, drag_source_);
+  engine_->add_up(drag_coefficient_);
+  engine_->add_up(numbers_in(drag_source_));
   out.add(field::drag_coefficient, drag_coefficient_);
   out.add(field::drag_source, drag_source_);
   if (settings_.pressure_returns) {
     deposit_returned(offer, settings_.threads, pressure_return_);
+    engine_->add_up(pressure_return_);
     out.add(field::pressure_return, pressure_return_);
   }
 }
 
-void ParticleParticipant::publish_state(std::span<const Vector3> impulse_given, Fields& out) {
+/// Of all particles; `impulse_given` comes as that of ours.
+void ParticleParticipant::publish_state(std::span<Vector3> impulse_given, Fields& out) {
+  std::array<double, 3> totals{total(bulk_.volume), total(bulk_.mass),
+                               static_cast<double>(offer_maker_.survey().outside)};
+  engine_->add_up(totals);
+  engine_->add_up(numbers_in(impulse_given));
   out.add(field::voidage, voidage_);
-  out.add(field::impulse_given, impulse_given);
+  out.add(field::impulse_given, std::span<const Vector3>(impulse_given));
   out.add(field::particle_velocity, particle_velocity_);
-  out.add_number(field::particle_volume, total(bulk_.volume));
-  out.add_number(field::particle_count, engine_->particles().size());
-  out.add_number(field::particle_mass, total(bulk_.mass));
+  out.add_number(field::particle_volume, totals[0]);
+  out.add_number(field::particle_count, engine_->all_particles().size());
+  out.add_number(field::particle_mass, totals[1]);
   out.add_number(field::excess_moved, excess_moved_);
   if (drag_range(settings_.drag.law).most_reynolds < INFINITY) {
-    out.add_number(field::particles_beyond_drag,
-                   static_cast<double>(offer_maker_.survey().outside));
+    out.add_number(field::particles_beyond_drag, totals[2]);
   }
   if (!flow_) return;
   flow_sent_ = flow_->window();
@@ -275,7 +289,7 @@ void ParticleParticipant::snapshot(Fields& out) {
         "particle side: asked for a snapshot while a candidate is neither committed nor rolled "
         "back");
   }
-  const ParticleState& particles = engine_->particles();
+  const ParticleState& particles = engine_->all_particles();
   id_.assign(particles.id.begin(), particles.id.end());
   out.add("id", id_);
   out.add("position", particles.position);

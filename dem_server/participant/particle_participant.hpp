@@ -69,7 +69,9 @@ class ParticleParticipant : public Participant {
                       const ParticleBulk& bulk, const Progress& progress);
   void map_particles(std::int64_t step);
   void publish_offer(const Offer& offer, Fields& out, std::span<const Vector3> lent = {});
-  void publish_state(std::span<const Vector3> impulse_given, Fields& out);
+  void publish_state(std::span<Vector3> impulse_given, Fields& out);
+  /// Sums over the processes that share the particles.
+  AddUp add_up() const;
   void warn_of_drag();
 
   std::string backend_;

@@ -1,4 +1,5 @@
 // What the engine of the particles cannot do is refused here, under the key that asks for it.
+#include <algorithm>
 #include <set>
 
 #include "proto/scene/check.hpp"
@@ -24,6 +25,14 @@ bool several_sizes(const ParticleSettings& particles) {
   for (const InsertionSettings& entry : particles.insertion) meet(entry.diameter, entry.sizes);
   for (const InflowSettings& inflow : particles.inflow) meet(inflow.diameter, inflow.sizes);
   return diameters.size() > 1;
+}
+
+bool spread_sizes(const ParticleSettings& particles) {
+  const auto spread = [](const auto& entry) {
+    return entry.sizes && entry.sizes->distribution != SizeDistribution::table;
+  };
+  return std::ranges::any_of(particles.insertion, spread) ||
+         std::ranges::any_of(particles.inflow, spread);
 }
 
 /// Findings against one engine.
@@ -81,9 +90,14 @@ void check_backend(const Scene& scene, Findings& findings) {
             fmt::format("{} asks for MPI", particles.ranks));
   refuse.of("particles.insertion", several_sizes(particles), can.any_size,
             "the particles have different diameters");
-  refuse.of("particles.inflow", !particles.inflow.empty(), can.flow, "particles come in");
-  refuse.of("particles.outflow", particles.inflow.empty() && particles_flow(scene), can.flow,
-            "particles can leave (an empty list keeps them in)");
+  refuse.of("particles.insertion", spread_sizes(particles), can.spread_sizes,
+            "a continuous distribution makes every diameter another one");
+  const bool alone = particles.ranks == 1;
+  const std::string on_ranks = alone ? "" : " on several ranks";
+  refuse.of("particles.inflow", !particles.inflow.empty(), can.flow && alone,
+            "particles come in" + on_ranks);
+  refuse.of("particles.outflow", particles.inflow.empty() && particles_flow(scene),
+            can.flow && alone, "particles can leave" + on_ranks + " (an empty list keeps them in)");
   refuse.of("interphase.forces", has_force(scene, InterphaseForce::lubrication), can.lubrication,
             "`lubrication` acts between particles that move");
   for (std::size_t i = 0; i < particles.insertion.size(); ++i) {

@@ -13,6 +13,7 @@ EngineAbilities abilities_of(ParticleBackend backend) {
               .surfaces = true,
               .any_mesh = true,
               .any_size = true,
+              .spread_sizes = true,
               .fixed = true,
               .flow = true};
     case ParticleBackend::kinematic:
@@ -21,12 +22,18 @@ EngineAbilities abilities_of(ParticleBackend backend) {
               .rolling = true,
               .cohesion = true,
               .any_size = true,
+              .spread_sizes = true,
               .fixed = true,
               .flow = true};
     case ParticleBackend::hard_sphere:
-      return {.any_size = true, .fixed = true, .flow = true};
+      return {.any_size = true, .spread_sizes = true, .fixed = true, .flow = true};
     case ParticleBackend::lammps:
-      return {.hertz = true, .any_size = true, .fixed = true, .flow = true, .ranks = true};
+      return {.hertz = true,
+              .any_size = true,
+              .spread_sizes = true,
+              .fixed = true,
+              .flow = true,
+              .ranks = true};
     case ParticleBackend::liggghts:
       return {.any_size = true, .fixed = true, .flow = true, .ranks = true};
     case ParticleBackend::yade:
@@ -40,6 +47,7 @@ EngineAbilities abilities_of(ParticleBackend backend) {
               .surfaces = true,
               .any_mesh = true,
               .any_size = true,
+              .spread_sizes = true,
               .fixed = true,
               .flow = true};
   }

@@ -15,6 +15,7 @@ struct EngineAbilities {
   bool surfaces = false;         ///< walls beside those of the mesh, at rest or moving, of any kind
   bool any_mesh = false;         ///< walls of meshes that are no boxes
   bool any_size = false;         ///< particles of different diameters
+  bool spread_sizes = false;     ///< diameters from a continuous distribution
   bool fixed = false;            ///< particles that nothing moves
   bool flow = false;             ///< particles that come in or leave
   bool ranks = false;            ///< several MPI processes

@@ -11,7 +11,8 @@ constexpr double skin_per_diameter = 0.15;
 
 }  // namespace
 
-BoxCommands box_commands(const Domain& domain, const ParticleState& spheres) {
+BoxCommands box_commands(const Domain& domain, const Vector3& gravity,
+                         const ParticleState& spheres) {
   double largest = 0;
   double mean = 0;
   for (const double radius : spheres.radius) {
@@ -20,9 +21,14 @@ BoxCommands box_commands(const Domain& domain, const ParticleState& spheres) {
   }
   const double shortest = (domain.upper - domain.lower).minCoeff();
   if (spheres.size() == 0) largest = mean = 1e-2 * shortest;  // who comes in is about as small
-  BoxCommands box{"boundary", "region box block",
+  BoxCommands box{"boundary", "processors", "region box block",
                   fmt::format("neighbor {:.17g} bin", skin_per_diameter * mean)};
-  for (int axis = 0; axis < 3; ++axis) box.boundary += domain.periodic(axis) ? " p" : " f";
+  int down = -1;
+  if (gravity.norm() > 0) gravity.cwiseAbs().maxCoeff(&down);
+  for (int axis = 0; axis < 3; ++axis) {
+    box.boundary += domain.periodic(axis) ? " p" : " f";
+    box.processors += axis == down ? " 1" : " *";
+  }
   for (int side = 0; side < 6; ++side) {
     const double outward = side % 2 == 0 ? -1 : 1;
     double margin = 0;

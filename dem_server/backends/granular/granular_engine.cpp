@@ -38,6 +38,8 @@ class GranularEngine final : public ParticleEngine {
     return ranks_.size() == 1 ? spheres_ : presented_;
   }
   bool mobile() const override { return true; }
+  const ParticleState& all_particles() const override { return spheres_; }
+  void add_up(std::span<double> values) const override { ranks_.add_up(values); }
   EngineCounters counters() const override { return counters_; }
 
   void advance(double window, int sub_steps, std::span<const Vector3> force,
@@ -108,6 +110,10 @@ void GranularEngine::advance(double window, int sub_steps, std::span<const Vecto
     if (!forces[row].allFinite()) refuse_force(spheres_.id[row], forces[row]);
   }
   const double time_step = window / sub_steps;
+  if (spheres_.size() == 0) {
+    candidate_ = {{}, {}, {}, {}, {}, {}, {0}};
+    return;
+  }
   simulation_->load(spheres_, committed_, forces, time_step);
   // Fixed pieces, so that who listens does not change what is computed.
   for (int done = 0; done < sub_steps; done += steps_between_signs_of_life) {
@@ -206,6 +212,9 @@ void GranularEngine::present(const Motions& motions) {
 
 void GranularEngine::exchange(std::span<const int> leaving, const ParticleState& entering) {
   if (leaving.empty() && entering.size() == 0) return;
+  if (ranks_.size() > 1) {
+    throw ConfigError("particles.ranks: {}: particles come and go on one rank only", ranks_.size());
+  }
   if (!before_exchange_) before_exchange_ = spheres_;
   const ParticleState checked = checked_rows(entering, laws_.walls());
   ParticleState after = spheres_;

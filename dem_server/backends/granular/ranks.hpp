@@ -1,11 +1,15 @@
 // The ranks of MPI that share one particle side. Each presents a constant share of the particles,
-// a run of rows, whatever rank the library has them on.
+// a run of rows, whatever rank the library has them on. Rank 0 speaks to the coordinator: it gets
+// to know of an error on any other rank wherever it waits for them.
 #pragma once
 
 #include <mpi.h>
 
 #include <span>
+#include <string>
 #include <vector>
+
+#include "proto/base/errors.hpp"
 
 namespace fluxpact {
 
@@ -33,12 +37,26 @@ class Ranks {
   int first_row(int rows) const { return first_row(rank_, rows); }
   int end_row(int rows) const { return first_row(rank_ + 1, rows); }
 
+  // Every rank must call these alike. On rank 0 they throw the error that another rank has
+  // reported, whose type is Error with its exit code.
+
   /// The parts of all ranks, one after the other, on each rank.
   void gather(std::span<const double> part, std::vector<double>& all) const;
   /// The sums over all ranks, on each rank, in place: the same bits everywhere.
   void add_up(std::span<double> values) const;
+  /// Until all ranks have come here.
+  void meet() const;
+
+  /// From rank 0 to all, which give room of the same size.
+  void broadcast(std::span<std::byte> bytes) const;
+
+  /// Tell rank 0 of an error, and wait for the end, which it brings.
+  [[noreturn]] void report(const std::string& text, ExitCode code) const;
 
  private:
+  void wait(MPI_Request request) const;
+  void throw_reported() const;
+
   MPI_Comm all_ = MPI_COMM_WORLD;
   int rank_ = 0;
   int size_ = 1;

@@ -116,7 +116,7 @@ int lammps_type(const ParticleState& spheres, int materials, int row) {
 
 LammpsScript lammps_script(const LammpsScene& scene) {
   const int materials = scene.laws.walls();
-  const BoxCommands box = box_commands(scene.domain, scene.spheres);
+  const BoxCommands box = box_commands(scene.domain, scene.gravity, scene.spheres);
   const Vector3& g = scene.gravity;
   const std::optional<double> mass = one_mass(scene);
   LammpsScript script;
@@ -126,6 +126,7 @@ LammpsScript lammps_script(const LammpsScene& scene) {
   start.emplace_back("atom_style sphere");
   start.emplace_back("atom_modify map yes sort 0 0");  // rows keep their order
   start.push_back(box.boundary);
+  start.push_back(box.processors);
   start.emplace_back("newton off");
   start.emplace_back("comm_modify vel yes");
   start.push_back(box.region);

@@ -1,16 +1,16 @@
 // The particle server with LAMMPS: a program of its own, since LAMMPS and LIGGGHTS define the same
 // symbols. `dem_server --backend lammps` becomes it.
 #include "dem_server/backends/granular/granular_engine.hpp"
+#include "dem_server/backends/granular/rank_server.hpp"
 #include "dem_server/backends/granular/ranks.hpp"
 #include "dem_server/backends/lammps/lammps_engine.hpp"
-#include "dem_server/participant/particle_server.hpp"
 
 int main(int argc, char** argv) {
   using namespace fluxpact;
   const MpiSession mpi(&argc, &argv);
-  return particle_server_main(
-      argc, argv, "dem_server",
-      {{ParticleBackend::lammps,
-        [](const Scene& scene, const Mesh& mesh) { check_box(scene, mesh, "lammps"); },
-        make_lammps_engine}});
+  return rank_server_main(
+      argc, argv,
+      {ParticleBackend::lammps,
+       [](const Scene& scene, const Mesh& mesh) { check_box(scene, mesh, "lammps"); },
+       make_lammps_engine});
 }

@@ -125,7 +125,8 @@ void LiggghtsSimulation::create(const ParticleState& spheres, const Motions& mot
     Vector3 position = at;
     const int i = atom.nlocal;
     const auto kind = std::ranges::find(kinds_, kind_of(spheres, row));
-    atom.avec->create_atom(static_cast<int>(kind - kinds_.begin()) + 1, position.data());
+    atom.avec->create_atom(static_cast<int>(kind - kinds_.begin()) + first_type(walls_ > 0),
+                           position.data());
     atom.tag[i] = static_cast<int>(spheres.id[row]);
     atom.radius[i] = spheres.radius[row];
     atom.density[i] = spheres.density[row];
@@ -236,10 +237,12 @@ std::unique_ptr<ParticleEngine> make_liggghts_engine(const Scene& scene, const M
   ContactLaws laws(scene.particles);
   ParticleState spheres = checked_rows(std::move(initial), laws.walls());
   std::vector<SphereKind> kinds;
-  add_kinds(spheres, kinds);
-  add_kinds(spheres_to_come(scene), kinds);
-  auto simulation = std::make_unique<LiggghtsSimulation>(
-      particle_domain(scene, mesh), laws, scene.scene.gravity, spheres, std::move(kinds));
+  const Domain domain = particle_domain(scene, mesh);
+  const bool walls = std::ranges::count(domain.sides, SideKind::wall) > 0;
+  add_kinds(spheres, walls, kinds);
+  add_kinds(spheres_to_come(scene), walls, kinds);
+  auto simulation = std::make_unique<LiggghtsSimulation>(domain, laws, scene.scene.gravity, spheres,
+                                                         std::move(kinds));
   return make_granular_engine(scene, mesh, "liggghts", std::move(laws), std::move(spheres),
                               std::move(simulation));
 }

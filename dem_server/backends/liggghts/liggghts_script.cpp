@@ -23,10 +23,10 @@ struct TypePair {
 
 class TypePairs {
  public:
-  TypePairs(const ContactLaws& laws, const std::vector<SphereKind>& kinds)
-      : laws_(laws), kinds_(kinds) {}
+  TypePairs(const ContactLaws& laws, bool walls, const std::vector<SphereKind>& kinds)
+      : laws_(laws), walls_(walls ? 1 : 0), kinds_(kinds) {}
 
-  int count() const { return static_cast<int>(kinds_.size()) + 1; }
+  int count() const { return static_cast<int>(kinds_.size()) + walls_; }
 
   TypePair operator()(int a, int b) const {
     const double inverse = inverse_mass(a) + inverse_mass(b);
@@ -38,10 +38,11 @@ class TypePairs {
 
  private:
   int material(int type) const {
-    return type + 1 < count() ? kinds_[type].material : laws_.walls();
+    return type < walls_ ? laws_.walls() : kinds_[type - walls_].material;
   }
   double inverse_mass(int type) const {
-    return type + 1 < count() && !kinds_[type].fixed ? 1 / kinds_[type].mass : 0;
+    if (type < walls_ || kinds_[type - walls_].fixed) return 0;
+    return 1 / kinds_[type - walls_].mass;
   }
   /// Pairs that cannot meet need numbers, too: those of any that can.
   const PairLaw& law_of(int a, int b) const {
@@ -54,6 +55,7 @@ class TypePairs {
   }
 
   const ContactLaws& laws_;
+  int walls_;  ///< types of walls: the first, or none
   const std::vector<SphereKind>& kinds_;
 };
 
@@ -67,12 +69,13 @@ std::string property(const char* name, const TypePairs& pairs,
   return words;
 }
 
-std::string group_command(const char* name, const std::vector<SphereKind>& kinds, bool fixed) {
+std::string group_command(const char* name, const std::vector<SphereKind>& kinds, int first,
+                          bool fixed) {
   std::string words = fmt::format("group {} type", name);
   bool any = false;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     if (kinds[k].fixed != fixed) continue;
-    words += fmt::format(" {}", k + 1);
+    words += fmt::format(" {}", static_cast<int>(k) + first);
     any = true;
   }
   return any ? words : std::string();
@@ -105,16 +108,18 @@ ParticleState spheres_to_come(const Scene& scene) {
   return spheres;
 }
 
-void add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds) {
+void add_kinds(const ParticleState& spheres, bool walls, std::vector<SphereKind>& kinds) {
+  const std::size_t most = walls ? most_kinds : 1;
   for (int row = 0; row < spheres.size(); ++row) {
     const SphereKind kind = kind_of(spheres, row);
     if (std::ranges::find(kinds, kind) != kinds.end()) continue;
-    if (kinds.size() == most_kinds) {
+    if (kinds.size() == most) {
       throw ConfigError(
-          "particles.backend: liggghts knows at most {} kinds of spheres (of one material, mass, "
-          "and free or fixed), and one of diameter {:.6g} m is of another; use fewer diameters, or "
+          "particles.backend: liggghts knows at most {} kinds of spheres here (of one material and "
+          "mass, free or fixed), and one of diameter {:.6g} m is of another; use fewer diameters, "
+          "or "
           "the native or lammps backend",
-          most_kinds, 2 * spheres.radius[row]);
+          most, 2 * spheres.radius[row]);
     }
     kinds.push_back(kind);
   }
@@ -123,12 +128,14 @@ void add_kinds(const ParticleState& spheres, std::vector<SphereKind>& kinds) {
 std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws& laws,
                                          const Vector3& gravity, const ParticleState& spheres,
                                          const std::vector<SphereKind>& kinds) {
-  const TypePairs pairs(laws, kinds);
-  const BoxCommands box = box_commands(domain, spheres);
+  const bool walls = std::ranges::count(domain.sides, SideKind::wall) > 0;
+  const TypePairs pairs(laws, walls, kinds);
+  const BoxCommands box = box_commands(domain, gravity, spheres);
   std::vector<std::string> script{"units si",
                                   "atom_style granular",
                                   "atom_modify map hash sort 0 0",  // rows keep their order
                                   box.boundary,
+                                  box.processors,
                                   "newton off",
                                   "communicate single vel yes",
                                   box.region,
@@ -147,8 +154,8 @@ std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws
                             [](const TypePair& pair) { return pair.law[LawColumn::friction]; }));
   script.push_back(fmt::format("pair_style gran {}", model));
   script.emplace_back("pair_coeff * *");
-  const std::string free = group_command("free", kinds, false);
-  const std::string fixed = group_command("fixed", kinds, true);
+  const std::string free = group_command("free", kinds, first_type(walls), false);
+  const std::string fixed = group_command("fixed", kinds, first_type(walls), true);
   if (!free.empty()) {
     script.push_back(free);
     script.emplace_back("fix motion free nve/sphere");
@@ -159,9 +166,8 @@ std::vector<std::string> liggghts_script(const Domain& domain, const ContactLaws
   }
   for (int side = 0; side < 6; ++side) {
     if (domain.sides[side] != SideKind::wall) continue;
-    script.push_back(fmt::format("fix wall_{} all wall/gran {} primitive type {} {}plane {:.17g}",
-                                 side_name(side), model, pairs.count(), "xyz"[side / 2],
-                                 domain.plane(side)));
+    script.push_back(fmt::format("fix wall_{} all wall/gran {} primitive type 1 {}plane {:.17g}",
+                                 side_name(side), model, "xyz"[side / 2], domain.plane(side)));
   }
   script.emplace_back("fix fluid all external pf/array 1");
   if (!fixed.empty()) {

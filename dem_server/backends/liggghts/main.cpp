@@ -1,16 +1,16 @@
 // The particle server with LIGGGHTS: a program of its own, since it and LAMMPS define the same
 // symbols. `dem_server --backend liggghts` becomes it.
 #include "dem_server/backends/granular/granular_engine.hpp"
+#include "dem_server/backends/granular/rank_server.hpp"
 #include "dem_server/backends/granular/ranks.hpp"
 #include "dem_server/backends/liggghts/liggghts_engine.hpp"
-#include "dem_server/participant/particle_server.hpp"
 
 int main(int argc, char** argv) {
   using namespace fluxpact;
   const MpiSession mpi(&argc, &argv);
-  return particle_server_main(
-      argc, argv, "dem_server",
-      {{ParticleBackend::liggghts,
-        [](const Scene& scene, const Mesh& mesh) { check_box(scene, mesh, "liggghts"); },
-        make_liggghts_engine}});
+  return rank_server_main(
+      argc, argv,
+      {ParticleBackend::liggghts,
+       [](const Scene& scene, const Mesh& mesh) { check_box(scene, mesh, "liggghts"); },
+       make_liggghts_engine});
 }

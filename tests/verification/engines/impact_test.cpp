@@ -1,8 +1,10 @@
 // Impacts with friction at low speed against closed forms; a free sphere under gravity and a force.
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "tests/unit/dem_server/native/oblique_impact.hpp"
-#include "tests/verification/engines/under_test.hpp"
+#include "tests/verification/engines/mixture.hpp"
 
 namespace fluxpact {
 namespace {
@@ -71,6 +73,18 @@ TEST(Impact, keeps_the_restitution_of_a_pair_whatever_the_masses) {
     const double parting = after.velocity[1].x() - after.velocity[0].x();
     EXPECT_NEAR(parting, 0.7 * approach, under_test().impact_tolerance * approach) << other;
   }
+}
+
+// Two materials, two diameters, free and fixed: each pair and each wall has its own law.
+TEST(Law, of_each_pair_without_friction_is_that_of_the_native_engine) {
+  Mixture mixture = mixture_of(ContactLaw::linear, 0);
+  const double largest = *std::ranges::min_element(mixture.state.radius);
+  for (std::size_t row = 0; row < mixture.state.id.size(); ++row) {
+    mixture.state.radius[row] = (row % 2 == 0 ? 1.0 : 0.8) * largest;
+  }
+  const double off = difference_after(mixture, 100);
+  fmt::print("{}: velocities differ by {:.2g}\n", under_test().name, off);
+  EXPECT_LT(off, 1e-9);  // round-off, grown by collisions
 }
 
 // Velocity-Verlet is exact for a constant force: from the first half kick on.

@@ -185,6 +185,31 @@ TEST(Exchange, takes_particles_out_and_in_and_undoes_it) {
   EXPECT_LT(after.position.back().z(), 0.028);
 }
 
+TEST(Exchange, begins_with_none_and_ends_with_none) {
+  Scene scene = cloud_scene({});
+  scene.scene.gravity = {0, 0, -9.81};
+  InflowSettings inflow;
+  inflow.material = "glass";
+  inflow.diameter = 2e-3;
+  inflow.number_rate = 1;
+  scene.particles.inflow.push_back(inflow);
+  scene.particles.outflow.emplace();
+  const auto engine = make_under_test(scene, {});
+  engine->advance(window, steps, {}, {});
+  ParticleState entering;
+  add_sphere(entering, {0.015, 0.015, 0.015}, {0, 0, 0}, 1e-3);
+  engine->exchange({}, entering);
+  engine->commit();
+  run(*engine, window, window / steps);
+  EXPECT_NEAR(engine->particles().velocity.at(0).z(), -9.81 * window, 1e-15);
+  engine->advance(window, steps, std::vector<Vector3>{Vector3::Zero()}, {});
+  engine->exchange(std::vector<int>{0}, {});
+  engine->commit();
+  engine->advance(window, steps, {}, {});
+  engine->commit();
+  EXPECT_EQ(engine->particles().size(), 0);
+}
+
 TEST(Particles, that_are_lost_are_named) {
   Scene scene = box_scene({0.02, 0.02, 0.02});
   scene.particles.walls = WallSource::none;

@@ -274,8 +274,8 @@ struct PairSettings {
   double friction = 0.3;                       ///< [-]
   /// [-] hard_sphere; default: what the springs and dashpots of the linear law would give
   std::optional<double> tangential_restitution;
-  std::optional<double> rolling_friction;      ///< [-] with a rolling law
-  std::optional<double> rolling_damping;  ///< [-] spring_dashpot: share of critical; default 0.3
+  std::optional<double> rolling_friction;  ///< [-] with a rolling law
+  std::optional<double> rolling_damping;   ///< [-] spring_dashpot: share of critical; default 0.3
   std::optional<double> cohesion_energy_density;  ///< [J/m³] sjkr
   std::optional<double> work_of_adhesion;         ///< [J/m²] jkr
   std::optional<double> liquid_volume;            ///< [m³] liquid_bridge

@@ -173,11 +173,15 @@ enum class TimeScheme { euler, bdf2 };
 enum class FluidBackend { native };
 enum class LinearSolverChoice { automatic, multigrid, conjugate_gradient };
 
-/// How far the lagged mass source of the legacy continuity is converged within a window.
+/// What carries the voidage in the mass source of the legacy continuity.
+enum class LegacyVelocity { faces, cells };
+
+/// The lagged mass source of the legacy continuity, and how far it is converged within a window.
 struct LegacySettings {
   double tolerance =
       1e-4;  ///< largest change of a face flux between two iterations over the largest flux [-]
   int iterations = 20;
+  LegacyVelocity velocity = LegacyVelocity::faces;
 };
 
 struct FluidNumerics {

@@ -53,6 +53,9 @@ struct BlockPass {
   const LawTable<Real>* laws = nullptr;
   double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces
   RootMasses root_masses;
+  double kick = 0;        ///< [m/s] at most, of a particle and a partner together, since they met
+  double usual_room = 0;  ///< [m] of CloseBudget
+  CloseSearch<Real>* search = nullptr;  ///< of the thread
 };
 
 /// Sums up the forces of the contacts of the block (not at the start).
@@ -61,11 +64,16 @@ void sum_contacts(const BlockPass<double, true>& pass);
 void sum_contacts(const BlockPass<float, false>& pass);
 void sum_contacts(const BlockPass<float, true>& pass);
 
-/// Kick and drift by those sums. Returns true if, after a drift, some particle is farther than
-/// `reach` from where the list was made (or not finite).
-bool move_block(const BlockPass<double, false>& pass);
-bool move_block(const BlockPass<double, true>& pass);
-bool move_block(const BlockPass<float, false>& pass);
-bool move_block(const BlockPass<float, true>& pass);
+struct Moved {
+  bool beyond = false;  ///< some particle is farther than `reach` from where the list was made, or
+                        ///< not finite
+  double kick = 0;      ///< [m/s] at most, of a particle of the block
+};
+
+/// Kick and drift by those sums.
+Moved move_block(const BlockPass<double, false>& pass);
+Moved move_block(const BlockPass<double, true>& pass);
+Moved move_block(const BlockPass<float, false>& pass);
+Moved move_block(const BlockPass<float, true>& pass);
 
 }  // namespace fluxpact

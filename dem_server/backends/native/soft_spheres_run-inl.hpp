@@ -5,6 +5,10 @@
 
 namespace fluxpact {
 
+/// What close pairs have beyond their flight: few more pairs against going through lists more
+/// often.
+inline constexpr double usual_room_per_skin = 0.02;
+
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
   const int count = presented_.size();
@@ -51,6 +55,7 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.laws = &law_table_;
   all.beyond_contact = sizes_.beyond_contact;
   all.root_masses = sizes_.root_masses;
+  all.usual_room = usual_room_per_skin * sizes_.skin;
   const auto pass_of = [&](int thread, int b) {
     BlockPass<Real, turning> pass = all;
     pass.first = blocks.first(b);
@@ -58,7 +63,14 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     pass.sum = sums_.data() + thread * of_thread +
                static_cast<std::ptrdiff_t>(turns_.room(b)) * blocks.block_size;
     pass.contacts = &list.block[b];
+    pass.search = &searches_[thread];
     return pass;
+  };
+  const auto move = [&](int thread, int b) {
+    const Moved moved = move_block(pass_of(thread, b));
+    // Blocks do not meet between two windows, where a kick has two halves.
+    kicks_[b] = phase == Phase::start ? kicks_[b] + moved.kick : moved.kick;
+    return moved.beyond;
   };
   bool beyond = false;
 #pragma omp parallel num_threads(threads) reduction(|| : beyond)
@@ -67,10 +79,14 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     for (int thread = 0; thread < threads; ++thread) {
       const int first = turns_.first(thread);
       for (int b = first; b < turns_.first(thread + 1); ++b) {
-        if (phase != Phase::start) meet(pass_of(thread, b));
+        if (phase != Phase::start) {
+          BlockPass<Real, turning> pass = pass_of(thread, b);
+          pass.kick = kick(b);
+          meet(pass);
+        }
         for (int read = first; read <= b; ++read) {
           if (turns_.last_reader(read) != b) continue;
-          const bool one = move_block(pass_of(thread, read));
+          const bool one = move(thread, read);
           beyond = beyond || one;
         }
       }
@@ -79,12 +95,22 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     for (int thread = 0; thread < threads; ++thread) {
       for (int b = turns_.first(thread); b < turns_.first(thread + 1); ++b) {
         if (turns_.last_reader(b) != blocks.count()) continue;
-        const bool one = move_block(pass_of(thread, b));
+        const bool one = move(thread, b);
         beyond = beyond || one;
       }
     }
   }
   return beyond;
+}
+
+/// The largest kick since blocks met, of a particle of a block and a partner together [m/s].
+template <class Real, bool turning>
+double SoftSpheres<Real, turning>::kick(int block) const {
+  double theirs = kicks_[block];
+  for (const int read : lists_[list_].block[block].partners) {
+    theirs = std::max(theirs, kicks_[read]);
+  }
+  return kicks_[block] + theirs;
 }
 
 /// The forces of the contacts of one block.
@@ -192,9 +218,7 @@ void SoftSpheres<Real, turning>::save_springs() {
   for (int b = 0; b < list.blocks.count(); ++b) {
     const ContactBlock<Real>& block = list.block[b];
     SavedSprings<Real>& saved = saved_springs_[b];  // its memory is used again
-    saved.inner.keep(block.inner_springs);
-    saved.outer.keep(block.outer_springs);
-    saved.image.keep(block.image_springs);
+    saved.pairs.take(block);
     saved.plane.keep(block.plane_springs);
     saved.surface.keep(block.surfaces.springs);
     saved.touches = block.surfaces.touches;
@@ -203,12 +227,11 @@ void SoftSpheres<Real, turning>::save_springs() {
 
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::bring_back_springs() {
+  for (ContactBlock<Real>& block : lists_[list_].block) block.budget.forget();
   for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
     ContactBlock<Real>& block = lists_[list_].block[b];
     const SavedSprings<Real>& saved = saved_springs_[b];
-    block.inner_springs.keep(saved.inner);
-    block.outer_springs.keep(saved.outer);
-    block.image_springs.keep(saved.image);
+    saved.pairs.bring_back(block);
     block.plane_springs.keep(saved.plane);
     block.surfaces.springs.keep(saved.surface);
     block.surfaces.touches = saved.touches;
@@ -220,6 +243,7 @@ template <class Real, bool turning>
 void SoftSpheres<Real, turning>::rollback() {
   if (!has_candidate_) return;
   has_candidate_ = false;
+  if (list_ != committed_list_) swap_close_pairs(lists_[list_], lists_[committed_list_]);
   list_ = committed_list_;
   if (before_exchange_) {
     presented_ = std::move(before_exchange_->presented);

@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "dem_server/backends/native/close_search-inl.hpp"
 #include "dem_server/backends/native/pair_pass-inl.hpp"
 #include "dem_server/backends/native/wall_pass-inl.hpp"
 
@@ -32,12 +33,13 @@ HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
 }
 
 /// The kick of one particle; `largest` is that of all so far, squared. Masses and radii, the last
-/// numbers of their rows, stay as they are, since those of loads and drives are 0.
+/// numbers of their rows, stay as they are, since those of loads and drives are 0. `drive`: three
+/// numbers [m/s²].
 template <class Real, bool turning>
-HWY_INLINE Row<Real> kick(const Load<Real, turning>& load, const Drive<Real>& drive, Real time_step,
+HWY_INLINE Row<Real> kick(const Load<Real, turning>& load, const Real* drive, Real time_step,
                           Body<Real, turning>& body, double& largest) {
   const Row<Real> acceleration =
-      multiply_add(load_row(load.force), same_row(body.inverse_mass), load_row(drive.acceleration));
+      multiply_add(load_row(load.force), same_row(body.inverse_mass), load_vector(drive));
   if constexpr (turning) {
     // d(r ω)/dt = r² F/I, I = 2/5 m r²
     const Row<Real> turn = same_row(Real(2.5) * time_step * body.inverse_mass);
@@ -63,8 +65,8 @@ HWY_INLINE Moved kick_and_drift(const BlockPass<Real, turning>& pass, double kic
   double largest = 0;  // kick, squared
   for (int i = pass.first; i < pass.last; ++i) {
     Body<Real, turning>& body = pass.bodies[i];
-    const Row<Real> velocity =
-        kick(pass.sum[i - pass.first], pass.drive[i], static_cast<Real>(kick_step), body, largest);
+    const Row<Real> velocity = kick(pass.sum[i - pass.first], pass.loads[i].force,
+                                    static_cast<Real>(kick_step), body, largest);
     const Row<double> position =
         multiply_add(widened<Real>(velocity), step, load_row(body.position));
     store_row(position, body.position);
@@ -80,16 +82,16 @@ HWY_INLINE Moved move_any(const BlockPass<Real, turning>& pass) {
   if (pass.phase == Phase::drift) return kick_and_drift(pass, pass.time_step);
   if (pass.phase == Phase::start) {
     for (int i = pass.first; i < pass.last; ++i) {
-      pass.kept[i] = kept(pass.bodies[i], pass.loads[i]);
-      pass.sum[i - pass.first] = full(pass.loads[i]);
+      pass.sum[i - pass.first] = full(pass.kept[i].load);
     }
     return kick_and_drift(pass, 0.5 * pass.time_step);
   }
   double largest = 0;
   for (int i = pass.first; i < pass.last; ++i) {
     const Load<Real, turning>& load = pass.sum[i - pass.first];
+    kick(load, pass.loads[i].force, static_cast<Real>(0.5 * pass.time_step), pass.bodies[i],
+         largest);
     pass.loads[i] = kept(load);
-    kick(load, pass.drive[i], static_cast<Real>(0.5 * pass.time_step), pass.bodies[i], largest);
   }
   return {false, std::sqrt(largest)};
 }

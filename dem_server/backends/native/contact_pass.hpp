@@ -2,7 +2,7 @@
 // its velocities and positions. The hot loop of the whole program; the instruction set is chosen
 // when it runs.
 //
-//   start   the state is kept; half a kick with the loads of the window before, then a drift
+//   start   half a kick with the loads of the window before, then a drift
 //   drift   contacts at the new positions, a whole kick, a drift
 //   settle  contacts, half a kick: positions and velocities are at the same time; loads are kept
 //
@@ -38,11 +38,11 @@ struct BlockPass {
   double spring_step = 0;  ///< [s] by which the springs grow
   int first = 0;           ///< particles of the block
   int last = 0;
-  Body<Real, turning>* bodies = nullptr;     ///< all particles; rows of the block move
-  KeptBody<Real, turning>* kept = nullptr;   ///< start: rows of the block are written
-  KeptLoad<Real, turning>* loads = nullptr;  ///< start: read; settle: rows of the block are written
+  Body<Real, turning>* bodies = nullptr;          ///< all particles; rows of the block move
+  const KeptBody<Real, turning>* kept = nullptr;  ///< start: the loads are read
+  KeptLoad<Real, turning>* loads = nullptr;  ///< drives in place of forces; settle: rows of the
+                                             ///< block become loads
   Load<Real, turning>* sum = nullptr;        ///< the loads of the block: summed up, then moved by
-  const Drive<Real>* drive = nullptr;
   const ListedAt* listed_at = nullptr;
   const double* origin = nullptr;  ///< [m] of listed_at
   double reach = 0;                ///< [m] from listed_at, beyond which the list may miss a contact

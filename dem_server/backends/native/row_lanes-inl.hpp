@@ -39,6 +39,12 @@ template <class T>
 HWY_INLINE Row<T> load_row(const T* row) {
   return hn::Load(hn::FixedTag<T, 4>(), row);
 }
+/// Three numbers and 0.
+template <class T>
+HWY_INLINE Row<T> load_vector(const T* numbers) {
+  const hn::FixedTag<T, 4> d;
+  return hn::MaskedLoad(hn::FirstN(d, 3), d, numbers);
+}
 template <class T>
 HWY_INLINE void store_row(Row<T> value, T* row) {
   hn::Store(value, hn::FixedTag<T, 4>(), row);
@@ -76,6 +82,10 @@ struct Row {
 template <class T>
 HWY_INLINE Row<T> load_row(const T* row) {
   return {{row[0], row[1], row[2], row[3]}};
+}
+template <class T>
+HWY_INLINE Row<T> load_vector(const T* numbers) {
+  return {{numbers[0], numbers[1], numbers[2], 0}};
 }
 template <class T>
 HWY_INLINE void store_row(Row<T> value, T* row) {

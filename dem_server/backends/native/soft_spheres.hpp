@@ -78,6 +78,7 @@ class SoftSpheres final : public ParticleEngine {
   void size_up();
   BodyRow body_of(int row) const;
   void tabulate_sides();
+  void keep_state();
   void set_drive(std::span<const Vector3> force);
   void plan_turns();
   void meet(const BlockPass<Real, turning>& pass) const;
@@ -118,8 +119,8 @@ class SoftSpheres final : public ParticleEngine {
   Sizes sizes_;
 
   ParticleState presented_;
-  HugeVector<BodyRow> bodies_;                // of the newest state
-  HugeVector<LoadRow> loads_;                 // of the newest state, between windows
+  HugeVector<BodyRow> bodies_;  // of the newest state
+  HugeVector<LoadRow> loads_;   // of the newest state, between windows; within: drives
   HugeVector<KeptBody<Real, turning>> kept_;  // while there is a candidate: the committed state
   std::array<List, 3> lists_;                 // in use, kept for rollback, being made
   int list_ = 0;
@@ -127,7 +128,6 @@ class SoftSpheres final : public ParticleEngine {
   std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
   std::optional<BeforeExchange> before_exchange_;
   bool has_candidate_ = false;
-  HugeVector<Drive<Real>> drive_;
   BlockTurns turns_;
   HugeVector<Load<Real, turning>> sums_;  // rooms of each thread
   std::vector<double> kicks_;  // [m/s] of each block, the largest of a particle since blocks met

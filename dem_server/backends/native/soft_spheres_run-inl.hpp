@@ -9,13 +9,18 @@ namespace fluxpact {
 /// often.
 inline constexpr double usual_room_per_skin = 0.02;
 
+/// What changes in a window, for a rollback.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::keep_state() {
+  kept_.resize(bodies_.size());
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i] = kept(bodies_[i], loads_[i]);
+}
+
+/// Drives in place of the forces of contacts, which are kept.
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
   const int count = presented_.size();
-  if (static_cast<int>(force.size()) != count) {
-    throw NumericsError("force on the particles: {} rows for {} particles", force.size(), count);
-  }
-  drive_.resize(count);
   int bad = count;
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
@@ -24,11 +29,13 @@ void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
     const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
     const Vector3 drive = fall + force[row] * inverse_mass;
     for (int axis = 0; axis < 3; ++axis) {
-      drive_[i].acceleration[axis] = static_cast<Real>(drive[axis]);
+      loads_[i].force[axis] = static_cast<Real>(drive[axis]);
     }
     if (!drive.allFinite()) bad = std::min(bad, row);
   }
-  if (bad < count) refuse_force(presented_.id[bad], force[bad]);
+  if (bad == count) return;
+  rollback();
+  refuse_force(presented_.id[bad], force[bad]);
 }
 
 /// One phase of all blocks. True if the list must be made anew.
@@ -46,7 +53,6 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.bodies = bodies_.data();
   all.kept = kept_.data();
   all.loads = loads_.data();
-  all.drive = drive_.data();
   all.listed_at = list.listed_at.data();
   all.origin = list.origin.data();
   all.reach = list.reach;
@@ -134,11 +140,15 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
     sizes_.limit = step_limit(laws_, presented_, walls_present_);
   }
   check_time_step(sizes_.limit, time_step);
-  set_drive(force);
+  if (static_cast<int>(force.size()) != presented_.size()) {
+    throw NumericsError("force on the particles: {} rows for {} particles", force.size(),
+                        presented_.size());
+  }
   save_springs();
-  kept_.resize(bodies_.size());
-  plan_turns();
+  keep_state();
   has_candidate_ = true;
+  set_drive(force);
+  plan_turns();
   bool beyond = sweep(Phase::start, time_step, 0);
   for (int step = 1; step <= sub_steps; ++step) {
     place_walls(time_ + step * time_step);

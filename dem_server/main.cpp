@@ -1,12 +1,14 @@
-// The particle server: command line only.
-#include "dem_server/participant/particle_participant.hpp"
-#include "proto/participant/server_main.hpp"
+// The particle server: the engines that it has, and where the others are.
+#include "dem_server/backends/kinematic/kinematic_engine.hpp"
+#include "dem_server/backends/native/native_engine.hpp"
+#include "dem_server/participant/particle_server.hpp"
 
 int main(int argc, char** argv) {
-  return fluxpact::server_main(
-      argc, argv,
-      {.name = "dem_server",
-       .description = "fluxpact particle server: takes part in a session as the particle side",
-       .backends = {"native", "kinematic"},
-       .make = fluxpact::make_particle_participant});
+  using fluxpact::ParticleBackend;
+  return fluxpact::particle_server_main(
+      argc, argv, "dem_server",
+      {{ParticleBackend::native, {}, fluxpact::make_native_engine},
+       {ParticleBackend::kinematic, fluxpact::check_kinematic_mesh,
+        fluxpact::make_kinematic_engine}},
+      {{"lammps", "dem_server_lammps"}, {"liggghts", "dem_server_liggghts"}});
 }

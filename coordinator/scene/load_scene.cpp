@@ -48,6 +48,7 @@ void resolve_paths(Scene& scene, const std::filesystem::path& file) {
   };
   if (scene.fluid.mesh.polymesh) resolve(scene.fluid.mesh.polymesh->path);
   if (scene.fluid.mesh.gmsh) resolve(scene.fluid.mesh.gmsh->path);
+  if (!scene.particles.program.empty()) resolve(scene.particles.program);
   for (auto& [name, surface] : scene.particles.surfaces) {
     if (surface.type == SurfaceType::stl) resolve(surface.path);
   }

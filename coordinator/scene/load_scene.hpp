@@ -11,7 +11,7 @@
 namespace fluxpact {
 
 /// Read and check the scene in a file; `overrides` are the `key.path=value` of `--set`. Paths of
-/// meshes and particles become absolute.
+/// meshes, particles and programs become absolute.
 /// Throws ConfigError: no such file, a directory, larger than 1 MiB, or anything wrong in the scene
 /// (all of it at once). Throws SystemError if the file is there but cannot be read.
 Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});

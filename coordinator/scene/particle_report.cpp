@@ -128,7 +128,7 @@ std::vector<std::string> particle_warnings(const Scene& scene) {
   for (const InflowSettings& inflow : particles.inflow) meet(inflow.material);
   const double ratio = least / scene.fluid.density;
   const bool known = has_force(scene, InterphaseForce::added_mass);
-  if (particles.backend != ParticleBackend::native || known || ratio >= light) return {};
+  if (particles.backend == ParticleBackend::kinematic || known || ratio >= light) return {};
   return {fmt::format(
       "interphase.forces does not have 'added_mass', but particles of '{}' are only {:.3g} times "
       "as "

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 
+#include "coordinator/session/command.hpp"
 #include "coordinator/session/interrupt.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/message/mesh_message.hpp"
@@ -57,9 +58,9 @@ Session::Session(const Scene& scene, const Mesh& mesh, const std::filesystem::pa
                                            : scene.launch.listen,
                frame_limit(mesh)) {
   peer(Role::fluid).role = Role::fluid;
-  peer(Role::fluid).name = "cfd_server";
+  peer(Role::fluid).name = server_name(Role::fluid);
   peer(Role::particles).role = Role::particles;
-  peer(Role::particles).name = "dem_server";
+  peer(Role::particles).name = server_name(Role::particles);
   if (scene.launch.mode == LaunchMode::local) launch(log, log_level);
 }
 
@@ -70,17 +71,9 @@ Session::~Session() {
 }
 
 void Session::launch(const std::filesystem::path& log, const std::string& log_level) {
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::array<std::string, 2> backends{std::string(name_of(scene_.fluid.backend)),
-                                            std::string(name_of(scene_.particles.backend))};
   for (Peer& each : peers_) {
-    const std::string& backend = backends[static_cast<std::size_t>(each.role)];
-    each.process = std::make_unique<Process>(
-        each.name, here / each.name,
-        std::vector<std::string>{"--connect", endpoint(), "--name", each.name, "--backend", backend,
-                                 "--with-parent", std::to_string(getpid()), "--log-level",
-                                 log_level},
-        log);
+    const Command command = server_command(scene_, each.role, endpoint(), log_level);
+    each.process = std::make_unique<Process>(each.name, command.program, command.arguments, log);
     spdlog::info("started {} (process {})", each.name, each.process->pid());
   }
 }

@@ -116,9 +116,4 @@ class ParticleParticipant : public Participant {
 /// The names of the fields that every particle side gives and needs.
 Identity particle_identity(const std::string& backend);
 
-/// Takes part with what the scene asks for when it is configured: particles moved by the engine
-/// `backend` (native | kinematic), or prescribed solids. Throws ConfigError for another name; its
-/// `configure` does if the scene asks for another engine than the program was started with.
-std::unique_ptr<Participant> make_particle_participant(const std::string& backend);
-
 }  // namespace fluxpact

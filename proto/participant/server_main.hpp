@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ struct ServerProgram {
   std::string name;                   ///< of the program
   std::string description;            ///< one line for --help
   std::vector<std::string> backends;  ///< the first is the default
+  /// Backends of other programs, which lie beside this one: the process becomes the program.
+  std::map<std::string, std::string> elsewhere{};
   std::function<std::unique_ptr<Participant>(const std::string& backend)> make;
 };
 

@@ -61,10 +61,10 @@ void check_times(const Scene& scene, Findings& findings) {
     findings.add("particles.time_step",
                  fmt::format("{} s gives {:.3g} steps in a window; at most {} are counted",
                              time_step, window / time_step, most));
-  } else if (time_step == 0 && scene.particles.backend == ParticleBackend::native &&
-             has_particles(scene)) {
+  } else if (time_step == 0 && knows_springs(scene.particles.backend) && has_particles(scene)) {
     findings.add("particles.time_step",
-                 "missing; required for particles of the native backend: a number in s, > 0");
+                 fmt::format("missing; required with particles.backend: {}: a number in s, > 0",
+                             name_of(scene.particles.backend)));
   }
 }
 
@@ -242,15 +242,15 @@ void check_pairs(const Scene& scene, Findings& findings) {
                   [](const auto& entry) { return entry.second.material == walls; })) {
     partners.emplace_back(walls);
   }
-  for (std::size_t i = 0; i < materials.size() && particles.backend == ParticleBackend::native;
-       ++i) {
+  if (!knows_contacts(particles.backend)) return;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
     for (std::size_t j = i; j < partners.size(); ++j) {
       if (stands_still(particles, materials[i]) && stands_still(particles, partners[j])) continue;
       if (!given.contains(ordered({materials[i], partners[j]}))) {
         findings.add("particles.contact.pairs",
-                     fmt::format("no entry with between: [{}, {}]; the native backend needs one "
+                     fmt::format("no entry with between: [{}, {}]; particles.backend: {} needs one "
                                  "for each pair that can touch",
-                                 materials[i], partners[j]));
+                                 materials[i], partners[j], name_of(particles.backend)));
       }
     }
   }
@@ -289,12 +289,6 @@ void check_interphase(const Scene& scene, Findings& findings) {
 
 /// What a force of the fluid on the particles needs of the rest of the scene.
 void check_lubrication(const Scene& scene, Findings& findings) {
-  if (scene.particles.backend != ParticleBackend::native && findings.sound("particles.backend")) {
-    findings.add("interphase.forces",
-                 fmt::format("`lubrication` acts between particles that move, and "
-                             "particles.backend: {} does not know it; remove it, or use `native`",
-                             name_of(scene.particles.backend)));
-  }
   const LubricationSettings& film = scene.interphase.lubrication;
   if (is_sound(findings, {"interphase.lubrication.roughness", "interphase.lubrication.reach"}) &&
       film.reach <= film.roughness) {
@@ -391,6 +385,7 @@ void check_scene(const Scene& scene, Findings& findings) {
   check_surfaces(scene, findings);
   check_contact_laws(scene, findings);
   check_insertion(scene, findings);
+  check_backend(scene, findings);
   check_interphase(scene, findings);
   check_drag(scene, findings);
   check_forces(scene, findings);

@@ -17,6 +17,8 @@ void check_scalars(const Scene& scene, Findings& findings);
 void check_surfaces(const Scene& scene, Findings& findings);
 /// The part of it for the contact laws: which keys they need, and which have no meaning with them.
 void check_contact_laws(const Scene& scene, Findings& findings);
+/// The part of it for what the engine of the particles cannot do.
+void check_backend(const Scene& scene, Findings& findings);
 /// The part of it for interphase.drag_expression.
 void check_drag(const Scene& scene, Findings& findings);
 /// The part of it for particles.insertion, inflow and outflow.

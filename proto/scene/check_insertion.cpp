@@ -84,10 +84,9 @@ void check_entry(const Scene& scene, const std::string& path, const InsertionSet
   if (settled && scene.scene.gravity.isZero() && findings.sound("scene.gravity")) {
     findings.add(path + ".type", "`settled` needs scene.gravity, which is zero; use `packing`");
   }
-  if (settled && scene.particles.backend != ParticleBackend::native &&
-      findings.sound("particles.backend")) {
+  if (settled && !knows_springs(scene.particles.backend) && findings.sound("particles.backend")) {
     findings.add(path + ".type",
-                 fmt::format("`settled` needs contacts, and particles.backend: {} has none; settle "
+                 fmt::format("`settled` needs springs, and particles.backend: {} has none; settle "
                              "the bed with `native` and read it from its results.h5 (type: file)",
                              name_of(scene.particles.backend)));
   }

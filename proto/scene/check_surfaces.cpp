@@ -48,14 +48,7 @@ void check_material(const std::string& path, const std::string& name,
 
 void check_surfaces(const Scene& scene, Findings& findings) {
   const ParticleSettings& particles = scene.particles;
-  if (particles.surfaces.empty() || !findings.sound("particles.backend") ||
-      !findings.sound("interphase.voidage")) {
-    return;
-  }
-  if (particles.backend == ParticleBackend::kinematic) {
-    findings.add("particles.surfaces",
-                 "with the backend `kinematic` nothing touches a wall; remove them");
-  }
+  if (particles.surfaces.empty() || !findings.sound("interphase.voidage")) return;
   if (scene.interphase.voidage.map == VoidageMap::prescribed) {
     findings.add("particles.surfaces",
                  "with `interphase.voidage: prescribed` there are no particles; remove them");

@@ -126,7 +126,12 @@ inline constexpr auto enum_names<Precision> = std::to_array<Named<Precision>>({
 template <>
 inline constexpr auto enum_names<ParticleBackend> = std::to_array<Named<ParticleBackend>>({
     {ParticleBackend::native, "native"},
+    {ParticleBackend::hard_sphere, "hard_sphere"},
+    {ParticleBackend::lammps, "lammps"},
+    {ParticleBackend::liggghts, "liggghts"},
+    {ParticleBackend::yade, "yade"},
     {ParticleBackend::kinematic, "kinematic"},
+    {ParticleBackend::custom, "custom"},
 });
 template <>
 inline constexpr auto enum_names<ContactLaw> = std::to_array<Named<ContactLaw>>({

@@ -29,6 +29,25 @@ bool has_particles(const Scene& scene) {
   return !scene.particles.insertion.empty() || !scene.particles.inflow.empty();
 }
 
+bool knows_contacts(ParticleBackend backend) {
+  return knows_springs(backend) || backend == ParticleBackend::hard_sphere;
+}
+
+bool knows_springs(ParticleBackend backend) {
+  switch (backend) {
+    case ParticleBackend::native:
+    case ParticleBackend::lammps:
+    case ParticleBackend::liggghts:
+    case ParticleBackend::yade:
+      return true;
+    case ParticleBackend::kinematic:
+    case ParticleBackend::hard_sphere:
+    case ParticleBackend::custom:
+      return false;
+  }
+  return false;
+}
+
 bool has_force(const Scene& scene, InterphaseForce force) {
   const auto& forces = scene.interphase.forces;
   return std::find(forces.begin(), forces.end(), force) != forces.end();

@@ -246,7 +246,9 @@ struct FluidSettings {
 
 // ---- particles ----
 
-enum class ParticleBackend { native, kinematic };
+/// native: our soft spheres. kinematic: no force moves them. hard_sphere: our events. lammps,
+/// liggghts, yade: these engines. custom: a server program of somebody else.
+enum class ParticleBackend { native, kinematic, hard_sphere, lammps, liggghts, yade, custom };
 enum class ContactLaw { linear, hertz };
 enum class RollingLaw { none, constant_torque, spring_dashpot };
 enum class CohesionLaw { none, sjkr, jkr, liquid_bridge };
@@ -385,6 +387,8 @@ struct ParticleNumerics {
 
 struct ParticleSettings {
   ParticleBackend backend = ParticleBackend::native;
+  std::string program;   ///< custom: the server; absolute once load_scene has seen it
+  int ranks = 1;         ///< MPI processes of the server
   double time_step = 0;  ///< [s] upper bound: the window is cut into equal sub-steps
   std::map<std::string, MaterialSettings> materials;
   ContactSettings contact;
@@ -513,6 +517,11 @@ bool particles_flow(const Scene& scene);
 
 /// Whether there are particles at any time.
 bool has_particles(const Scene& scene);
+
+/// Whether the engine follows particles.contact at all, and whether it does so with springs, in
+/// steps of time. Of a custom engine nothing is known.
+bool knows_contacts(ParticleBackend backend);
+bool knows_springs(ParticleBackend backend);
 
 /// Whether interphase.forces names it.
 bool has_force(const Scene& scene, InterphaseForce force);

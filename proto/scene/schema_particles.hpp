@@ -160,8 +160,8 @@ void describe(Visit& visit, ContactSettings& contact) {
          .meaning = "The elasticity of the walls."},
         contact.walls);
   visit({.name = "pairs",
-         .meaning = "One entry for each pair of materials and for each material with `walls`; the "
-                    "native backend needs all but those between materials of which all stands "
+         .meaning = "One entry for each pair of materials and for each material with `walls`; all "
+                    "are needed but those between materials of which all stands "
                     "still (fixed particles, surfaces, `walls`)."},
         contact.pairs);
 }
@@ -182,13 +182,26 @@ void describe(Visit& visit, ParticleNumerics& numerics) {
 template <class Visit>
 void describe(Visit& visit, ParticleSettings& particles) {
   visit({.name = "backend",
-         .meaning = "The program that moves the particles. `native`: soft spheres; `kinematic`: no "
-                    "force moves them."},
+         .meaning = "The engine that moves the particles. `native`: our soft spheres; "
+                    "`hard_sphere`: our collisions as events; `lammps`, `liggghts`, `yade`: these "
+                    "programs, if they were there when ours were built; `kinematic`: no force "
+                    "moves them; `custom`: the server that `program` names."},
         particles.backend);
+  visit({.name = "program",
+         .otherwise = "**required** with custom",
+         .only_with = "backend: custom",
+         .meaning = "Path of the particle server (an absolute one, or from the scene's folder); "
+                    "docs/new-backend.md tells how one is made."},
+        particles.program);
+  visit({.name = "ranks",
+         .range = {.lower = 1, .upper = 4096},
+         .only_with = "backend: lammps, liggghts",
+         .meaning = "Processes that share the particles through MPI."},
+        particles.ranks);
   visit({.name = "time_step",
          .dimension = Dimension::time,
          .range = positive,
-         .otherwise = "one window; the native backend with particles needs it",
+         .otherwise = "one window; engines with springs need it",
          .meaning = "Upper bound of the particles' step: the window is cut into equal steps."},
         particles.time_step);
   visit({.name = "materials", .meaning = "The materials of the particles, by name."},

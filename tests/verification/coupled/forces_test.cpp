@@ -6,9 +6,11 @@
 #include <numbers>
 #include <random>
 
+#include "dem_server/backends/native/native_engine.hpp"
 #include "dem_server/interphase/drag.hpp"
 #include "dem_server/interphase/overlap.hpp"
 #include "dem_server/participant/particle_participant.hpp"
+#include "dem_server/participant/particle_server.hpp"
 #include "proto/scene/names.hpp"
 #include "tests/unit/dem_server/participant/free_flight.hpp"
 #include "tests/verification/coupled/coupled_run.hpp"
@@ -205,7 +207,8 @@ TEST_P(Suspension, stays_calm_however_long_the_window_is_beside_the_response_of_
   // before, the first case reaches 18 times the bound.
   const SuspensionCase& c = GetParam();
   const Scene scene = settling_box(c.ratio, c.diameter, c.window, 1200);
-  CoupledRun run(scene, make_particle_participant("native"));
+  CoupledRun run(scene, make_particle_participant(
+                            "native", {{ParticleBackend::native, {}, make_native_engine}}));
   double largest = 0;
   for (int step = 1; step <= c.windows; ++step) {
     run.advance();

@@ -1,39 +1,22 @@
 // Chooses what takes part when the scene arrives: the hello that comes before cannot know it.
-#include <memory>
-#include <string>
+#include "dem_server/participant/particle_server.hpp"
 
-#include "dem_server/backends/kinematic/kinematic_engine.hpp"
-#include "dem_server/backends/native/native_engine.hpp"
+#include <algorithm>
+
 #include "dem_server/insertion/insertion.hpp"
 #include "dem_server/participant/particle_participant.hpp"
 #include "dem_server/participant/prescribed_solids.hpp"
 #include "proto/base/errors.hpp"
+#include "proto/participant/server_main.hpp"
+#include "proto/scene/names.hpp"
 
 namespace fluxpact {
 namespace {
 
-const char* name_of(ParticleBackend backend) {
-  return backend == ParticleBackend::native ? "native" : "kinematic";
-}
-
-std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh,
-                                            const Progress& alive) {
-  // Before particles are packed, which may take a while.
-  if (scene.particles.backend == ParticleBackend::kinematic) check_kinematic_mesh(scene, mesh);
-  ParticleState particles = insert_particles(scene, mesh, alive);
-  switch (scene.particles.backend) {
-    case ParticleBackend::native:
-      return make_native_engine(scene, mesh, std::move(particles));
-    case ParticleBackend::kinematic:
-      return make_kinematic_engine(scene, mesh, std::move(particles));
-  }
-  throw ConfigError("particles.backend: unknown value {}",
-                    static_cast<int>(scene.particles.backend));
-}
-
 class ChosenByScene : public Participant {
  public:
-  explicit ChosenByScene(std::string backend) : backend_(std::move(backend)) {}
+  explicit ChosenByScene(EngineMaker engine)
+      : backend_(name_of(engine.backend)), engine_(std::move(engine)) {}
 
   Identity identity() const override { return particle_identity(backend_); }
 
@@ -43,7 +26,7 @@ class ChosenByScene : public Participant {
     if (scene.interphase.voidage.map == VoidageMap::prescribed) {
       chosen_ = std::make_unique<PrescribedSolids>(backend_);
     } else {
-      if (backend_ != name_of(scene.particles.backend)) {
+      if (engine_.backend != scene.particles.backend) {
         throw ConfigError(
             "particles.backend is '{}', but this particle server was started as '{}'; start it "
             "with "
@@ -51,7 +34,7 @@ class ChosenByScene : public Participant {
             name_of(scene.particles.backend), backend_, name_of(scene.particles.backend));
       }
       chosen_ = std::make_unique<ParticleParticipant>(
-          backend_, [this](const Scene& s, const Mesh& m) { return make_engine(s, m, alive_); });
+          backend_, [this](const Scene& s, const Mesh& m) { return make_engine(s, m); });
     }
     chosen_->configure(scene, mesh);
   }
@@ -71,19 +54,42 @@ class ChosenByScene : public Participant {
   void figures(Fields& out, const Progress& progress) override { chosen_->figures(out, progress); }
 
  private:
+  std::unique_ptr<ParticleEngine> make_engine(const Scene& scene, const Mesh& mesh) const {
+    if (engine_.check_mesh) engine_.check_mesh(scene, mesh);
+    return engine_.make(scene, mesh, insert_particles(scene, mesh, alive_));
+  }
+
   std::string backend_;
+  EngineMaker engine_;
   Progress alive_;
   std::unique_ptr<Participant> chosen_;  ///< set by configure, which the session calls first
 };
 
 }  // namespace
 
-std::unique_ptr<Participant> make_particle_participant(const std::string& backend) {
-  for (const auto known : {ParticleBackend::native, ParticleBackend::kinematic}) {
-    if (backend == name_of(known)) return std::make_unique<ChosenByScene>(backend);
+std::unique_ptr<Participant> make_particle_participant(const std::string& backend,
+                                                       std::vector<EngineMaker> engines) {
+  std::string known;
+  for (EngineMaker& engine : engines) {
+    if (backend == name_of(engine.backend))
+      return std::make_unique<ChosenByScene>(std::move(engine));
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(engine.backend));
   }
-  throw ConfigError("particle backend '{}' is not known; this program has native and kinematic",
-                    backend);
+  throw ConfigError("particle backend '{}' is not known; this program has {}", backend, known);
+}
+
+int particle_server_main(int argc, char** argv, const std::string& program,
+                         std::vector<EngineMaker> engines,
+                         std::map<std::string, std::string> elsewhere) {
+  ServerProgram server;
+  server.name = program;
+  server.description = "fluxpact particle server: takes part in a session as the particle side";
+  for (const EngineMaker& engine : engines) server.backends.emplace_back(name_of(engine.backend));
+  server.elsewhere = std::move(elsewhere);
+  server.make = [&](const std::string& backend) {
+    return make_particle_participant(backend, engines);
+  };
+  return server_main(argc, argv, server);
 }
 
 }  // namespace fluxpact

@@ -39,11 +39,14 @@ template <class T>
 HWY_INLINE Row<T> load_row(const T* row) {
   return hn::Load(hn::FixedTag<T, 4>(), row);
 }
-/// Three numbers and 0.
+/// Three of four numbers, and 0. (A masked load would do, but takes 5 ns.)
 template <class T>
 HWY_INLINE Row<T> load_vector(const T* numbers) {
   const hn::FixedTag<T, 4> d;
-  return hn::MaskedLoad(hn::FirstN(d, 3), d, numbers);
+  const hn::RebindToUnsigned<decltype(d)> bits;
+  using Bits = hn::TFromD<decltype(bits)>;
+  alignas(32) static constexpr Bits three[4] = {~Bits{0}, ~Bits{0}, ~Bits{0}, 0};
+  return hn::And(hn::LoadU(d, numbers), hn::BitCast(d, hn::Load(bits, three)));
 }
 template <class T>
 HWY_INLINE void store_row(Row<T> value, T* row) {

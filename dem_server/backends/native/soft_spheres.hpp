@@ -78,8 +78,7 @@ class SoftSpheres final : public ParticleEngine {
   void size_up();
   BodyRow body_of(int row) const;
   void tabulate_sides();
-  void keep_state();
-  void set_drive(std::span<const Vector3> force);
+  void set_drive(std::span<const Vector3> force, bool keep);
   void plan_turns();
   void meet(const BlockPass<Real, turning>& pass) const;
   double kick(int block) const;

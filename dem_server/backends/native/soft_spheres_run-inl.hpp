@@ -9,21 +9,14 @@ namespace fluxpact {
 /// often.
 inline constexpr double usual_room_per_skin = 0.02;
 
-/// What changes in a window, for a rollback.
+/// Drives in place of the forces of contacts; at the start of a window the state is `kept` first.
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::keep_state() {
-  kept_.resize(bodies_.size());
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i] = kept(bodies_[i], loads_[i]);
-}
-
-/// Drives in place of the forces of contacts, which are kept.
-template <class Real, bool turning>
-void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
+void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force, bool keep) {
   const int count = presented_.size();
   int bad = count;
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
+    if (keep) kept_[i] = kept(bodies_[i], loads_[i]);
     const int row = lists_[list_].row[i];
     const double inverse_mass = static_cast<double>(bodies_[i].inverse_mass);
     const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
@@ -145,9 +138,9 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
                         presented_.size());
   }
   save_springs();
-  keep_state();
+  kept_.resize(bodies_.size());
   has_candidate_ = true;
-  set_drive(force);
+  set_drive(force, true);
   plan_turns();
   bool beyond = sweep(Phase::start, time_step, 0);
   for (int step = 1; step <= sub_steps; ++step) {
@@ -156,7 +149,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
       check(time_step, step, sub_steps);
       check_surfaces();  // what this list has noted would go with it
       sort_and_list(nullptr, true);
-      set_drive(force);
+      set_drive(force, false);
     }
     const Phase phase = step < sub_steps ? Phase::drift : Phase::settle;
     beyond = sweep(phase, time_step, time_step);

@@ -51,7 +51,7 @@ struct KeptLoad {
 };
 template <class Real>
 struct KeptLoad<Real, false> {
-  Real force[3];
+  Real force[4];  // the last number is 0
 };
 
 /// Of a body and its load what changes: the committed state while a window runs.
@@ -87,7 +87,7 @@ void put_back(const KeptBody<Real, turning>& row, Body<Real, turning>& body) {
 }
 template <class Real, bool turning>
 KeptLoad<Real, turning> kept(const Load<Real, turning>& load) {
-  KeptLoad<Real, turning> row;
+  KeptLoad<Real, turning> row{};
   std::copy_n(load.force, 3, row.force);
   if constexpr (turning) std::copy_n(load.lever, 3, row.lever);
   return row;

@@ -54,10 +54,9 @@ CHOICES = {
 }
 # The tracers of twin.yaml, in the bed of Table 1.
 INLETS = "jet: {value: 1}, background: {value: 1}"
-TRACERS = [
-    f"fluid.scalars.uniform={{diffusivity: 2.0e-5, initial: 1, boundaries: {{{INLETS}, outlet: {{value: 1}}}}}}",
-    f"fluid.scalars.step={{diffusivity: 2.0e-5, boundaries: {{{INLETS}, outlet: {{value: 0}}}}}}",
-]
+UNIFORM = f"{{diffusivity: 2.0e-5, initial: 1, boundaries: {{{INLETS}, outlet: {{value: 1}}}}}}"
+STEP = f"{{diffusivity: 2.0e-5, boundaries: {{{INLETS}, outlet: {{value: 0}}}}}}"
+TRACERS = [f"fluid.scalars={{uniform: {UNIFORM}, step: {STEP}}}"]
 TOLERANCES = ["1e-2", "1e-4", "1e-6", "1e-8"]
 
 

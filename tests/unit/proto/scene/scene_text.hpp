@@ -39,7 +39,7 @@ fluid:
     outlet: {type: pressure, value: 10}
     walls: {type: wall, slip: free}
   initial: {superficial: [0, 0, 1]}
-  numerics: {convection: upwind, correctors: 3, pressure_tolerance: 1e-5, solver: multigrid, legacy: {tolerance: 1e-3, iterations: 7}}
+  numerics: {convection: upwind, correctors: 3, pressure_tolerance: 1e-5, solver: multigrid, legacy: {tolerance: 1e-3, iterations: 7, velocity: cells}}
 particles:
   backend: native
   time_step: 1.0e-4

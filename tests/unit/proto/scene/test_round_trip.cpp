@@ -56,6 +56,7 @@ TEST(ReadScene, gives_every_value_of_the_text) {
   EXPECT_EQ(s.fluid.numerics.solver, LinearSolverChoice::multigrid);
   EXPECT_EQ(s.fluid.numerics.legacy.tolerance, 1e-3);
   EXPECT_EQ(s.fluid.numerics.legacy.iterations, 7);
+  EXPECT_EQ(s.fluid.numerics.legacy.velocity, LegacyVelocity::cells);
   EXPECT_EQ(s.particles.time_step, 1e-4);
   EXPECT_EQ(s.particles.materials.at("steel").density, 7800);
   ASSERT_EQ(s.particles.contact.pairs.size(), 5U);

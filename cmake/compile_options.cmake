@@ -2,10 +2,14 @@
 # No -ffast-math: the same bits for any number of threads is a promise.
 # Contraction into fused multiply-adds is a fixed choice of the compiler for one binary, so it stays.
 add_library(fluxpact_options INTERFACE)
-target_include_directories(fluxpact_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+# Whoever links the installed libraries includes by the same paths, and has warnings of their own.
+target_include_directories(fluxpact_options INTERFACE
+  $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/generated> $<INSTALL_INTERFACE:include/fluxpact>)
+target_compile_features(fluxpact_options INTERFACE cxx_std_20)
 target_compile_options(fluxpact_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # false alarms on std::string in g++ 12 (GCC bug 105651)
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Werror>"
+  # False alarms on std::string in g++ 12 (GCC bug 105651).
+  "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>")
 if(FLUXPACT_SANITIZE)
   # The preset runs the tests with ASAN_OPTIONS=intercept_tls_get_addr=0: up to GCC 13 the interceptor
   # takes some thread-local blocks for what they are not, and now and then the search for leaks dies

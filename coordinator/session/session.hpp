@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "coordinator/session/process.hpp"
 #include "proto/session/channel.hpp"
+#include "proto/session/process.hpp"
 #include "proto/session/state_machine.hpp"
 
 namespace fluxpact {

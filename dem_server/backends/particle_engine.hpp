@@ -32,6 +32,8 @@ struct EngineCounters {
   std::int64_t sub_steps = 0;   ///< since it was made
   std::int64_t rebuilds = 0;    ///< of the list of neighbours, since it was made
   std::int64_t list_pairs = 0;  ///< in the list now
+  std::int64_t collisions = 0;  ///< of an event-driven engine, since it was made
+  std::int64_t events = 0;      ///< likewise, whatever they are
 };
 
 class EngineState;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dem_server/interphase/forces.hpp"
+#include "dem_server/interphase/prediction.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/asked_fields.hpp"
 #include "proto/participant/field_names.hpp"
@@ -18,31 +19,6 @@ const Vector3 no_vector = Vector3::Zero();
 
 // Whose offers are made one after the other: all that is read and written of them stays in cache.
 constexpr int rows_at_once = 1024;
-
-// The share of the load that contacts carried in the window just ended.
-double carried_share(const Vector3& load, const Vector3& acceleration) {
-  const double load_squared = load.squaredNorm();
-  if (!(load_squared > 0)) return 0;
-  return std::clamp(-(acceleration - load).dot(load) / load_squared, 0.0, 1.0);
-}
-
-const Vector3& velocity_of(const ParticleState& particles, const Prediction& past, int i) {
-  return past.ahead.empty() ? particles.velocity[i] : past.ahead[i];
-}
-
-/// The row of a particle in the window just ended; -1: there was none, or it was not there.
-int past_row(const Prediction& past, int i) {
-  if (!(past.length > 0)) return -1;
-  return past.row_before.empty() ? i : past.row_before[i];
-}
-
-/// s of a particle that was in row `before`.
-double carried_in_past(const ExchangeSettings& settings, const Prediction& past,
-                       const Vector3& velocity, double per_mass, int before) {
-  const Vector3 load = settings.gravity + per_mass * past.forces->force[before];
-  const Vector3 change = velocity - past.velocity_before[before];
-  return carried_share(load, 1 / past.length * change);
-}
 
 /// v*, and 1 − s: the part of a further force that would move the particle.
 struct Foreseen {
@@ -212,23 +188,6 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
         "force of the fluid on particle {} at ({}, {}, {}) m is ({}, {}, {}) N in step {}: the "
         "velocity or pressure gradient received from the fluid side is not finite, or too large",
         particles.id[bad], x.x(), x.y(), x.z(), f.x(), f.y(), f.z(), step);
-  }
-}
-
-void velocities_ahead(const ExchangeSettings& settings, const ParticleState& particles,
-                      const ParticleBulk& bulk, const Prediction& past, const WindowForces& forces,
-                      double length, std::vector<Vector3>& velocity) {
-  const int count = particles.size();
-  velocity.resize(static_cast<std::size_t>(count));
-#pragma omp parallel for schedule(static) num_threads(settings.threads)
-  for (int i = 0; i < count; ++i) {
-    const Vector3& now = particles.velocity[i];
-    velocity[i] = now;
-    if (!settings.mobile || particles.is_fixed(i)) continue;
-    const int before = past_row(past, i);
-    const double carried =
-        before < 0 ? 0 : carried_in_past(settings, past, now, 1 / bulk.mass[i], before);
-    velocity[i] += length * (1 - carried) * (settings.gravity + forces.force[i] / bulk.mass[i]);
   }
 }
 

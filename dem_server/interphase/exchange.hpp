@@ -25,8 +25,8 @@
 // between 0 and s0 for any Δt.
 //
 // With it the pressure gradient is eliminated, too (model a), because a liquid and its particles
-// accelerate each other through it: v* = v*_0 − a ∇p, a = (1 − s) Δt/ρ_p (s: see Prediction), and
-// the fluid gets Σ w k a ∇p with the ∇p that it solves for. Taken from the window before, it is
+// accelerate each other through it: v* = v*_0 − a ∇p, a = (1 − s) Δt/ρ_p (s: see prediction.hpp),
+// and the fluid gets Σ w k a ∇p with the ∇p that it solves for. Taken from the window before, it is
 // stable only up to B + 2 φ β < 2 ε, B = b/(1 + b + M/m), β = (b + M/m)/(1 + b + M/m): at best for
 // φ < 1/4 when b is large. Eliminated, a uniform suspension with a given flux keeps its slip within
 // s1/s0 = 1 − B/(ε + φ β), in (0, 1), for any Δt and φ.
@@ -43,6 +43,8 @@
 #include "proto/participant/participant.hpp"
 
 namespace fluxpact {
+
+struct Prediction;
 
 /// What stays the same for a whole run.
 struct ExchangeSettings {
@@ -139,33 +141,6 @@ void measure_bulk(const ParticleState& particles, ParticleBulk& bulk);
 void window_forces(const ExchangeSettings& settings, const Offer& offer, const FluidSeen& fluid,
                    const ParticleState& particles, const ParticleBulk& bulk, std::int64_t step,
                    double length, WindowForces& forces);
-
-/// v* [m/s], the velocity at the end of the coming window without its drag:
-///   v* = v + Δt [(1 − s) a − s J/(m Δt)],
-/// a: gravity, buoyancy, E, and the pressure gradient of the fluid's newest state (unless it is
-/// eliminated); s in [0, 1]: the share of the load that contacts carried in the window just ended,
-/// s = −c·l/|l|² with the load l (all but contacts, per mass) and the contact part c = Δv/Δt − l. A
-/// particle that rests on others will not fall, and its contacts will answer the drag as they did;
-/// one in free flight has s = 0.
-struct Prediction {
-  std::span<const Vector3> velocity_before;  ///< [m/s] at the start of the window just ended
-  double length = 0;                         ///< [s] of that window; 0: there was none, s = 0
-  const WindowForces* forces = nullptr;      ///< that acted in it
-  /// Row of each particle in that window, -1 for one that has just come in: s = 0. Empty: the same
-  /// rows.
-  std::span<const int> row_before = {};
-  std::span<const Eddy> eddies = {};  ///< of that window's offer
-  /// Velocities [m/s] at the start of the coming window, if that is not now (velocities_ahead): the
-  /// window just ended is then the one that leads there. Empty: those of the particles.
-  std::span<const Vector3> ahead = {};
-};
-
-/// Velocities [m/s] at the end of a window of `length` [s] that is yet to come under `forces` (rows
-/// as they are now): v + Δt (1 − s) l, l the load by gravity and these forces, s the share that
-/// contacts carried in the window just ended, `past`. Without contacts that is exact.
-void velocities_ahead(const ExchangeSettings& settings, const ParticleState& particles,
-                      const ParticleBulk& bulk, const Prediction& past, const WindowForces& forces,
-                      double length, std::vector<Vector3>& velocity);
 
 /// Fills weights (already built), k and v* of an offer for a coming window of `offer.window`.
 /// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "dem_server/interphase/prediction.hpp"
 #include "proto/base/compensated_sum.hpp"
 
 namespace fluxpact {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "dem_server/interphase/prediction.hpp"
 #include "dem_server/participant/precision_error.hpp"
 #include "proto/base/compensated_sum.hpp"
 #include "proto/base/errors.hpp"

@@ -61,7 +61,7 @@ void check_times(const Scene& scene, Findings& findings) {
     findings.add("particles.time_step",
                  fmt::format("{} s gives {:.3g} steps in a window; at most {} are counted",
                              time_step, window / time_step, most));
-  } else if (time_step == 0 && knows_springs(scene.particles.backend) && has_particles(scene)) {
+  } else if (time_step == 0 && knows_contacts(scene.particles.backend) && has_particles(scene)) {
     findings.add("particles.time_step",
                  fmt::format("missing; required with particles.backend: {}: a number in s, > 0",
                              name_of(scene.particles.backend)));

@@ -19,6 +19,7 @@ void check_surfaces(const Scene& scene, Findings& findings);
 void check_contact_laws(const Scene& scene, Findings& findings);
 /// The part of it for what the engine of the particles cannot do.
 void check_backend(const Scene& scene, Findings& findings);
+void check_yade(const Scene& scene, Findings& findings);
 /// The part of it for interphase.drag_expression.
 void check_drag(const Scene& scene, Findings& findings);
 /// The part of it for particles.insertion, inflow and outflow.

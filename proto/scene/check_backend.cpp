@@ -108,6 +108,7 @@ void check_backend(const Scene& scene, Findings& findings) {
   refuse.of("fluid.mesh", has_particles(scene) && !scene.fluid.mesh.is_box(),
             can.any_mesh || particles.backend == ParticleBackend::kinematic,
             "a mesh from a file may be no box, and its walls are more than six sides");
+  if (particles.backend == ParticleBackend::yade) check_yade(scene, findings);
 }
 
 }  // namespace fluxpact

@@ -33,8 +33,26 @@ void check_key(const std::string& section, const ConditionalKey& key, Findings& 
 constexpr std::string_view linear = "law: linear";
 constexpr std::string_view hertz = "law: hertz";
 
+/// Hard spheres have no springs, but beds that settle before the start do so on springs.
+bool wants_springs(const ParticleSettings& particles) {
+  return particles.backend != ParticleBackend::hard_sphere ||
+         std::ranges::any_of(particles.insertion, [](const InsertionSettings& entry) {
+           return entry.type == InsertionType::settled;
+         });
+}
+
+void check_tangential_restitution(const std::string& pair, const PairSettings& settings,
+                                  ParticleBackend backend, Findings& findings) {
+  const std::string path = pair + ".tangential_restitution";
+  if (!settings.tangential_restitution || backend == ParticleBackend::hard_sphere) return;
+  if (!findings.sound(path) || !findings.sound("particles.backend")) return;
+  findings.add(path,
+               "has no meaning here, only with particles.backend: hard_sphere (springs have "
+               "their tangential_stiffness); remove it");
+}
+
 void check_pair_keys(const std::string& path, const PairSettings& pair,
-                     const ContactSettings& contact, Findings& findings) {
+                     const ContactSettings& contact, bool springs_needed, Findings& findings) {
   const bool is_linear = contact.law == ContactLaw::linear;
   const bool rolls = contact.rolling != RollingLaw::none;
   const bool springs = contact.rolling == RollingLaw::spring_dashpot;
@@ -43,7 +61,8 @@ void check_pair_keys(const std::string& path, const PairSettings& pair,
   constexpr std::string_view any_rolling = "rolling: constant_torque | spring_dashpot";
   constexpr std::string_view bridge = "cohesion: liquid_bridge";
   const ConditionalKey keys[] = {
-      {"normal_stiffness", pair.normal_stiffness.has_value(), is_linear, true, linear, "1000"},
+      {"normal_stiffness", pair.normal_stiffness.has_value(), is_linear, springs_needed, linear,
+       "1000"},
       {"tangential_stiffness", pair.tangential_stiffness.has_value(), is_linear, false, linear, ""},
       {"rolling_friction", pair.rolling_friction.has_value(), rolls, true,
        springs ? "rolling: spring_dashpot"
@@ -97,8 +116,9 @@ void check_contact_laws(const Scene& scene, Findings& findings) {
              "{youngs_modulus: 10 MPa, poisson_ratio: 0.25}"},
             findings);
   for (std::size_t i = 0; i < contact.pairs.size(); ++i) {
-    check_pair_keys(fmt::format("particles.contact.pairs[{}]", i), contact.pairs[i], contact,
-                    findings);
+    const std::string path = fmt::format("particles.contact.pairs[{}]", i);
+    check_pair_keys(path, contact.pairs[i], contact, wants_springs(scene.particles), findings);
+    check_tangential_restitution(path, contact.pairs[i], scene.particles.backend, findings);
   }
 }
 

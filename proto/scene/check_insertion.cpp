@@ -84,7 +84,8 @@ void check_entry(const Scene& scene, const std::string& path, const InsertionSet
   if (settled && scene.scene.gravity.isZero() && findings.sound("scene.gravity")) {
     findings.add(path + ".type", "`settled` needs scene.gravity, which is zero; use `packing`");
   }
-  if (settled && !knows_springs(scene.particles.backend) && findings.sound("particles.backend")) {
+  // Hard spheres settle on the springs of their pairs, which are demanded then.
+  if (settled && !knows_contacts(scene.particles.backend) && findings.sound("particles.backend")) {
     findings.add(path + ".type",
                  fmt::format("`settled` needs springs, and particles.backend: {} has none; settle "
                              "the bed with `native` and read it from its results.h5 (type: file)",

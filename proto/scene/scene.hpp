@@ -272,6 +272,8 @@ struct PairSettings {
   std::optional<double> tangential_stiffness;  ///< [N/m] linear; default 2/7 of the normal one
   double restitution = 0.9;                    ///< [-]
   double friction = 0.3;                       ///< [-]
+  /// [-] hard_sphere; default: what the springs and dashpots of the linear law would give
+  std::optional<double> tangential_restitution;
   std::optional<double> rolling_friction;      ///< [-] with a rolling law
   std::optional<double> rolling_damping;  ///< [-] spring_dashpot: share of critical; default 0.3
   std::optional<double> cohesion_energy_density;  ///< [J/m³] sjkr

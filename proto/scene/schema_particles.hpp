@@ -119,7 +119,8 @@ void describe(Visit& visit, PairSettings& pair) {
          .range = positive,
          .otherwise = "**required** with linear",
          .only_with = "contact.law: linear",
-         .meaning = "Spring along the line of centres."},
+         .meaning = "Spring along the line of centres. `hard_sphere` can do without, but an "
+                    "insertion of type `settled` cannot."},
         pair.normal_stiffness);
   visit({.name = "tangential_stiffness",
          .dimension = Dimension::stiffness,
@@ -132,6 +133,13 @@ void describe(Visit& visit, PairSettings& pair) {
          .range = {.lower = 0, .upper = 1, .without_lower = true},
          .meaning = "Speed after over speed before a head-on collision; sets the damping."},
         pair.restitution);
+  visit({.name = "tangential_restitution",
+         .range = {.lower = -1, .upper = 1},
+         .otherwise = "what the linear springs and dashpots would give",
+         .only_with = "particles.backend: hard_sphere",
+         .meaning = "Minus the tangential speed of the surfaces after over before a collision in "
+                    "which they stick: 1 turns it round, -1 leaves it."},
+        pair.tangential_restitution);
   visit({.name = "friction", .range = not_negative, .meaning = "Coulomb's coefficient."},
         pair.friction);
   describe_rolling_and_cohesion(visit, pair);
@@ -201,8 +209,11 @@ void describe(Visit& visit, ParticleSettings& particles) {
   visit({.name = "time_step",
          .dimension = Dimension::time,
          .range = positive,
-         .otherwise = "one window; engines with springs need it",
-         .meaning = "Upper bound of the particles' step: the window is cut into equal steps."},
+         .otherwise = "one window; engines that know contacts need it",
+         .meaning = "Upper bound of the particles' step: the window is cut into equal steps. With "
+                    "`hard_sphere`, which steps from event to event, the time that a contact "
+                    "stands for: spheres that collide more often than that are in a lasting "
+                    "contact, and lose no energy there (docs/theory.md)."},
         particles.time_step);
   visit({.name = "materials", .meaning = "The materials of the particles, by name."},
         particles.materials);

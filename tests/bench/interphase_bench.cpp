@@ -14,7 +14,7 @@
 #include <functional>
 
 #include "dem_server/insertion/random.hpp"
-#include "dem_server/interphase/exchange.hpp"
+#include "dem_server/interphase/prediction.hpp"
 #include "proto/mesh/box.hpp"
 #include "proto/scene/names.hpp"
 #include "tests/bench/bench_bed.hpp"

@@ -5,7 +5,7 @@ build=(g++ cmake ninja-build make git pkg-config libeigen3-dev libzmq3-dev cppzm
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev libxxhash-dev libmuparser-dev libhypre-dev libhwy-dev
   liblammps-dev libliggghts-dev openmpi-bin)
 test=(libgtest-dev libgmock-dev librapidcheck-dev clang-format-14 clang-tidy-14 python3 python3-h5py python3-zmq python3-msgpack python3-yaml
-  python3-numpy python3-matplotlib)
+  python3-numpy python3-matplotlib yade)
 wanted=()
 for group in "$@"; do
   case $group in

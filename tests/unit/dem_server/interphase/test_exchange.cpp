@@ -6,7 +6,7 @@
 #include <string>
 
 #include "boxes.hpp"
-#include "dem_server/interphase/exchange.hpp"
+#include "dem_server/interphase/prediction.hpp"
 #include "proto/base/errors.hpp"
 
 namespace fluxpact {

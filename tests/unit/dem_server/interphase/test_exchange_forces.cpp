@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "boxes.hpp"
-#include "dem_server/interphase/exchange.hpp"
 #include "dem_server/interphase/forces.hpp"
+#include "dem_server/interphase/prediction.hpp"
 #include "proto/scene/names.hpp"
 
 namespace fluxpact {

@@ -1,4 +1,4 @@
-#include "coordinator/session/process.hpp"
+#include "proto/session/process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -74,20 +74,31 @@ Process::Process(std::string name, const std::filesystem::path& program,
                                pointers_to(words).data(), pointers_to(variables).data());
   if (code != 0) {
     pid_ = -1;
-    throw SystemError("cannot start {} ('{}'): {}; it is expected beside the coordinator", name_,
-                      program.string(), std::strerror(code));
+    throw SystemError("cannot start {} ('{}'): {}; it is expected there", name_, program.string(),
+                      std::strerror(code));
   }
+  watch();
+}
+
+void Process::watch() {
   descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0));
-  if (descriptor_ < 0) {
-    const int reason = errno;
-    finish(std::chrono::milliseconds(0));
-    throw SystemError("cannot watch {} (process {}): {}", name_, pid_, std::strerror(reason));
-  }
+  if (descriptor_ >= 0) return;
+  const int reason = errno;
+  finish(std::chrono::milliseconds(0));
+  throw SystemError("cannot watch {} (process {}): {}", name_, pid_, std::strerror(reason));
 }
 
 Process::~Process() {
   finish(std::chrono::milliseconds(0));
   if (descriptor_ >= 0) close(descriptor_);
+}
+
+void Process::follow(pid_t successor, std::chrono::milliseconds grace) {
+  finish(grace);
+  close(descriptor_);
+  pid_ = successor;
+  status_.reset();
+  watch();
 }
 
 std::optional<std::string> Process::ended() {

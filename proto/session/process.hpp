@@ -29,10 +29,15 @@ class Process {
   /// How it ended ("exit code 4", "signal 9 (Killed)"), or nothing if it still runs.
   std::optional<std::string> ended();
 
+  /// Wait for it to end by itself, then go on with its child `successor`, which then is ours (we
+  /// are a subreaper, prctl(2)). Throws SystemError if that one is gone.
+  void follow(pid_t successor, std::chrono::milliseconds grace);
+
   /// Wait for it to end by itself, then kill it.
   void finish(std::chrono::milliseconds grace) noexcept;
 
  private:
+  void watch();
   std::string name_;
   pid_t pid_ = -1;
   int descriptor_ = -1;

@@ -10,6 +10,7 @@
 #include "coordinator/scene/load_scene.hpp"
 #include "coordinator/scene/mesh_report.hpp"
 #include "coordinator/scene/particle_report.hpp"
+#include "coordinator/scene/self_disturbance.hpp"
 #include "coordinator/scene/surface_report.hpp"
 #include "proto/base/logging.hpp"
 #include "proto/base/version.hpp"
@@ -28,6 +29,8 @@ void check_scene(const RunOptions& options) {
              sub_steps(scene));
   fmt::print("{}{}", particle_report(scene, mesh), mesh_report(scene, mesh));
   for (const std::string& text : particle_warnings(scene)) fmt::print("  warning: {}\n", text);
+  for (const std::string& text : self_disturbance_warnings(scene, mesh))
+    fmt::print("  warning: {}\n", text);
   for (const std::string& line : surfaces) fmt::print("{}\n", line);
 }
 

@@ -9,16 +9,16 @@
 
 int main(int argc, char** argv) {
   using fluxpact::ParticleBackend;
-  return fluxpact::particle_server_main(
-      argc, argv, "dem_server",
-      {{ParticleBackend::native, {}, fluxpact::make_native_engine},
-       {ParticleBackend::hard_sphere, fluxpact::check_hard_sphere_mesh,
-        fluxpact::make_hard_sphere_engine},
-       {ParticleBackend::kinematic, fluxpact::check_kinematic_mesh,
-        fluxpact::make_kinematic_engine},
+  std::vector<fluxpact::EngineMaker> engines{
+      {ParticleBackend::native, {}, fluxpact::make_native_engine},
+      {ParticleBackend::hard_sphere, fluxpact::check_hard_sphere_mesh,
+       fluxpact::make_hard_sphere_engine},
+      {ParticleBackend::kinematic, fluxpact::check_kinematic_mesh,
+       fluxpact::make_kinematic_engine}};
 #ifdef FLUXPACT_WITH_YADE
-       {ParticleBackend::yade, {}, fluxpact::make_yade_engine},
+  engines.push_back({ParticleBackend::yade, {}, fluxpact::make_yade_engine});
 #endif
-      },
+  return fluxpact::particle_server_main(
+      argc, argv, "dem_server", std::move(engines),
       {{"lammps", "dem_server_lammps"}, {"liggghts", "dem_server_liggghts"}});
 }

@@ -4,7 +4,8 @@
 // Σ Λ_f = S_c V with the interstitial fluxes Λ_f = Φ_f/ε_f and the lagged mass source
 //     S_c = −(ρ/ε_P) (Δε/Δt + u_P·∇ε),   ∇ε = (1/V) Σ ε_f A_f
 // It does not telescope: where the voidage varies, what flows in differs from what flows out and is
-// stored.
+// stored. u_P is the mean of Λ/A over the faces of the cell, or that of Φ/A over ε_P (the scene's
+// fluid.numerics.legacy.velocity).
 #pragma once
 
 #include <span>
@@ -22,7 +23,7 @@ void legacy_face_voidage(const Stencil& stencil, std::span<const double> voidage
 void legacy_voidage_gradient(const Stencil& stencil, std::span<const double> face_voidage,
                              std::span<Vector3> gradient);
 
-/// S_c V/ρ [m³/s] of each cell from the interstitial velocity u [m/s] rebuilt from Λ.
+/// S_c V/ρ [m³/s] of each cell from its interstitial velocity u [m/s].
 void legacy_source(const Stencil& stencil, std::span<const double> old_voidage,
                    std::span<const double> voidage, std::span<const Vector3> voidage_gradient,
                    std::span<const Vector3> velocity, double window, std::span<double> source);

@@ -110,16 +110,28 @@ double largest(const Stencil& s, std::span<const double> values) {
   return result;
 }
 
+/// u_P [m/s] of the mass source, from the fluxes in hand.
+void legacy_velocity(const Step& step, WindowFields& w) {
+  const FluidProblem& problem = step.problem;
+  const Stencil& s = problem.stencil;
+  if (problem.numerics.legacy.velocity == LegacyVelocity::cells) {
+    reconstruct(s, problem.reconstruction, w.flux, w.superficial_gradient, w.interstitial);
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+    for (int cell = 0; cell < s.cells; ++cell) w.interstitial[cell] /= step.solids.voidage[cell];
+    return;
+  }
+#pragma omp parallel for schedule(static) num_threads(s.threads)
+  for (int f = 0; f < s.faces; ++f) w.interstitial_flux[f] = w.flux[f] * w.face_scale[f];
+  reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient, w.interstitial);
+}
+
 /// Repeat the pressure solve with the mass source of the fluxes before until they settle.
 void solve_legacy_continuity(const Step& step, WindowFields& w, FluidReport& report) {
   const FluidProblem& problem = step.problem;
   const Stencil& s = problem.stencil;
   double change = 0;
   for (int pass = 0; pass < problem.numerics.legacy.iterations; ++pass) {
-#pragma omp parallel for schedule(static) num_threads(s.threads)
-    for (int f = 0; f < s.faces; ++f) w.interstitial_flux[f] = w.flux[f] * w.face_scale[f];
-    reconstruct(s, problem.reconstruction, w.interstitial_flux, w.velocity_gradient,
-                w.interstitial);
+    legacy_velocity(step, w);
     legacy_source(s, step.old_state.voidage, step.solids.voidage, w.voidage_gradient,
                   w.interstitial, step.window.length, w.source);
     std::ranges::copy(w.flux, w.flux_before.begin());

@@ -2,13 +2,15 @@
 """The experiment of Wu, Zhan, Berrouk and Nandakumar (mass conservation in DPM-CFD): runs what is missing, draws, and tells the numbers.
 
     reproduce.py [--twin] [--build build/release] [--out runs/wu2011] [--until 1.0] [--threads 1] [--figures DIRECTORY]
-                 [--tolerances] [--choices] [--draw]
+                 [--tolerances] [--choices] [--whole] [--tracers] [--records] [--draw]
 
 Without --twin the bed of Table 1 (bed.yaml; a run of 1 s takes about an hour on a quiet core), with it the bed of half its size
 (twin.yaml). The conservative and the legacy method run at once from the same settled bed. A run that has reached --until is not
 repeated; --draw runs nothing, and draws as far as the runs have come. Figures (PNG and SVG): net_inflow, Fig. 1 of the paper; with
 --twin transport, a tracer that should stay 1. --tolerances runs the twin at four tolerances of the pressure solver, --choices
-with what the paper leaves open chosen otherwise, both for --until or 0.1 s.
+with what the paper leaves open chosen otherwise, both for --until or 0.1 s; with --whole they take the bed of Table 1. --tracers adds to
+that bed the tracers of the twin. --records starts that bed from each record of its legacy run, with the velocity of the cells in the mass
+source.
 
 Needs Debian's python3-matplotlib, python3-numpy, python3-h5py.
 """
@@ -42,6 +44,7 @@ CHOICES = {
     "as in twin.yaml": [],
     "velocities interstitial": INTERSTITIAL,
     "source converged to 1e-8": ["fluid.numerics.legacy={tolerance: 1e-8, iterations: 200}", "fluid.numerics.pressure_tolerance=1e-8"],
+    "velocity of the cells": ["fluid.numerics.legacy.velocity=cells"],
     "one pass of the source": ["fluid.numerics.legacy={iterations: 1}"],
     "restitution 0.6": [f"particles.contact.pairs[{pair}].restitution=0.6" for pair in (0, 1)],
     "friction 0.1": [f"particles.contact.pairs[{pair}].friction=0.1" for pair in (0, 1)],
@@ -49,6 +52,12 @@ CHOICES = {
     "voidage by centres": ["interphase.voidage=centroid"],
     "voidage by bells of 4 d": ["interphase.voidage=kernel"],
 }
+# The tracers of twin.yaml, in the bed of Table 1.
+INLETS = "jet: {value: 1}, background: {value: 1}"
+TRACERS = [
+    f"fluid.scalars.uniform={{diffusivity: 2.0e-5, initial: 1, boundaries: {{{INLETS}, outlet: {{value: 1}}}}}}",
+    f"fluid.scalars.step={{diffusivity: 2.0e-5, boundaries: {{{INLETS}, outlet: {{value: 0}}}}}}",
+]
 TOLERANCES = ["1e-2", "1e-4", "1e-6", "1e-8"]
 
 
@@ -236,8 +245,8 @@ def settled(options):
 
 
 def compare_methods(options):
-    prefix, scene = ("twin_", "twin.yaml") if options.twin else ("", "bed.yaml")
-    bed = settled(options)
+    prefix, scene = ("twin_", "twin.yaml") if options.twin else ("tracer_" if options.tracers else "", "bed.yaml")
+    bed = settled(options) + (TRACERS if options.tracers else [])
     runs = {
         "conservative": Run(options, scene, prefix + "conservative", bed, options.until),
         "legacy": Run(options, scene, prefix + "legacy", bed + LEGACY, options.until),
@@ -255,20 +264,39 @@ def compare_methods(options):
     options.figures.mkdir(parents=True, exist_ok=True)
     title = "half the bed of Wu et al., 23,351 spheres" if options.twin else "the bed of Wu et al., 186,805 spheres"
     draw_net_inflow(audits, title, options.figures / f"{prefix}net_inflow")
-    if options.twin:
-        draw_transport(audits, options.figures / "twin_transport")
+    if options.twin or options.tracers:
+        draw_transport(audits, options.figures / f"{prefix}transport")
 
 
 def compare_settings(options, kind, settings, common):
-    """One run of the twin after another."""
+    """One run after another."""
     bed = settled(options)
+    prefix, scene = ("twin_", "twin.yaml") if options.twin else ("", "bed.yaml")
     for index, (name, values) in enumerate(settings.items()):
-        run = Run(options, "twin.yaml", f"twin_{kind}_{index}", bed + common + values, options.until or 0.1)
+        run = Run(options, scene, f"{prefix}{kind}_{index}", bed + common + values, options.until or 0.1)
         if not options.draw:
             carry_out([run])
         rows = read_audit(run.directory)
         if rows is not None:
             tell(name, rows)
+
+
+def sample_records(options):
+    """Some windows from the spheres of each record of the legacy run, which have the velocity of the cells in the mass source."""
+    path = options.out / "legacy/results.h5"
+    if not path.exists():
+        sys.exit(f"{path}: not there; run the bed without --records first")
+    with h5py.File(path, "r") as results:
+        times = {name: record.attrs["time"] for name, record in results["particles"].items()}
+    for name, start in times.items():
+        insertion = [f"particles.insertion=[{{type: file, material: glass, path: {path.resolve()}, group: /particles/{name}}}]"]
+        values = insertion + LEGACY + CHOICES["velocity of the cells"]
+        run = Run(options, "bed.yaml", f"record_{name}", values, options.until or 0.003)
+        if start > 0 and not options.draw:
+            carry_out([run])
+        rows = read_audit(run.directory)
+        if rows is not None:
+            tell(f"from {start:g} s", rows)
 
 
 def main():
@@ -281,17 +309,26 @@ def main():
     parser.add_argument("--figures", type=Path, help="where the figures go (default: --out)")
     parser.add_argument("--tolerances", action="store_true", help="the twin, conservative, at four tolerances of the pressure solver")
     parser.add_argument("--choices", action="store_true", help="the twin, legacy, with what the paper leaves open chosen otherwise")
+    parser.add_argument("--whole", action="store_true", help="with --tolerances or --choices: the bed of Table 1, not the twin")
+    parser.add_argument("--tracers", action="store_true", help="the bed of Table 1 with the tracers of the twin")
+    parser.add_argument("--records", action="store_true", help="from each record of the legacy run, the velocity of the cells in the source")
     parser.add_argument("--draw", action="store_true", help="run nothing")
     options = parser.parse_args()
     options.figures = options.figures or options.out
-    options.twin = options.twin or options.tolerances or options.choices
+    options.twin = options.twin or ((options.tolerances or options.choices) and not options.whole)
+    if options.twin and (options.tracers or options.records):
+        parser.error("--tracers and --records are of the bed of Table 1: the twin has its tracers, leave --twin out")
+    if options.whole and not (options.tolerances or options.choices):
+        parser.error("--whole goes with --tolerances or --choices; the bed of Table 1 is run without --twin anyway")
     if not options.draw and not os.access(options.build / "bin/coordinator", os.X_OK):
         parser.error(f"{options.build}/bin/coordinator is not there; build it, or name its folder with --build")
     if options.tolerances:
         compare_settings(options, "tolerance", {f"pressure to {t}": [f"fluid.numerics.pressure_tolerance={t}"] for t in TOLERANCES}, [])
     if options.choices:
         compare_settings(options, "choice", CHOICES, LEGACY)
-    if not (options.tolerances or options.choices):
+    if options.records:
+        sample_records(options)
+    if not (options.tolerances or options.choices or options.records):
         options.until = options.until or 1.0
         compare_methods(options)
 

@@ -67,13 +67,19 @@ MomentumAudit audit_momentum(const Mesh& mesh, const MomentumWindow& window,
   audit.momentum_to_particles = given.value();
   audit.impulse_error = ratio(handed.difference.value(), handed.scale.value());
   audit.impulse_error_cell = handed.worst_cell;
-  audit.handover_error =
-      ratio((audit.momentum_to_particles - committed.handed_over).norm(), committed.scale);
+  Vector3 lent = Vector3::Zero();
+  if (committed.begun) {
+    audit.handover_error =
+        ratio((audit.momentum_to_particles - committed.handed_over).norm(), committed.scale);
+  } else {
+    lent = audit.momentum_to_particles;
+  }
 
-  audit.total.handed_over = handed.impulse.value();
+  audit.total.begun = true;
+  audit.total.handed_over = handed.impulse.value() - lent;
   audit.total.scale = handed.scale.value();
   audit.total.in_flight = committed.in_flight;
-  audit.total.in_flight.add(audit.total.handed_over);
+  audit.total.in_flight.add(handed.impulse.value());
   audit.total.in_flight.add(-audit.momentum_to_particles);
   audit.ledger = audit.total.in_flight.value();
   return audit;

@@ -11,6 +11,9 @@
 // moves impulse between neighbouring cells and leaves its sum. B, S and ε carry these weights, so
 // the sums are equal to round-off.
 //
+// In window 1 the fluid has handed over nothing yet. What the particles are given in it is lent: S
+// of the same window has it, and so has H, of which the rest alone is to be given in window 2.
+//
 // ∇p is that of p_d = p − ρ g·x, on both sides: the buoyancy of the hydrostatic part is in neither
 // sum.
 #pragma once
@@ -47,7 +50,8 @@ struct CompensatedVector {
 
 /// What the last committed fluid step handed over, and all that is in flight. At time 0 nothing is.
 struct MomentumTotal {
-  Vector3 handed_over{0, 0, 0};  ///< Σ_c H of the last committed window [N s]
+  bool begun = false;            ///< a window was committed
+  Vector3 handed_over{0, 0, 0};  ///< Σ_c H of the last committed window, less what was lent [N s]
   double scale = 0;              ///< what an error in it is relative to [N s]
   CompensatedVector in_flight;   ///< Σ over all windows of handed over − given [N s]
 };
@@ -59,7 +63,7 @@ struct MomentumAudit {
   /// Σ_c |J_c as sent − Δt (S_c − B_c u_c − A_c ∇p_c)| / scale of this window [-].
   double impulse_error = 0;
   int impulse_error_cell = -1;  ///< where the difference is largest; -1: nowhere
-  /// |Σ_c given now − Σ_c H of the last window| / its scale [-].
+  /// |Σ_c given now − Σ_c H of the last window| / its scale [-]; 0 in window 1, see above.
   double handover_error = 0;
   MomentumTotal total;  ///< to be kept if the window is committed
 };

@@ -14,6 +14,7 @@
 #include "coordinator/scene/load_scene.hpp"
 #include "coordinator/scene/mesh_report.hpp"
 #include "coordinator/scene/particle_report.hpp"
+#include "coordinator/scene/self_disturbance.hpp"
 #include "coordinator/scene/surface_report.hpp"
 #include "coordinator/session/interrupt.hpp"
 #include "proto/base/logging.hpp"
@@ -220,6 +221,7 @@ ExitCode run_scene(const RunOptions& options) {
   Run run(scene, mesh, options);
   for (const std::string& line : surfaces) spdlog::info("{}", line);
   for (const std::string& text : particle_warnings(scene)) spdlog::warn("{}", text);
+  for (const std::string& text : self_disturbance_warnings(scene, mesh)) spdlog::warn("{}", text);
   const ExitCode code = run.run();
   if (!options.quiet) fmt::print("{}", run.summary());
   if (code == ExitCode::interrupted)

@@ -112,6 +112,23 @@ std::string particle_report(const Scene& scene, const Mesh& mesh) {
   return text;
 }
 
+std::optional<double> solid_fraction(const InsertionSettings& entry, const Mesh& mesh,
+                                     double margin) {
+  if (entry.type == InsertionType::file || entry.height > 0) return std::nullopt;
+  const Box box = box_of(entry.within, mesh);
+  const Vector3 size = box.upper - box.lower;
+  const double sphere = SizeLaw(entry.diameter, entry.sizes).mean_volume();
+  double solids = entry.count * sphere;
+  if (entry.type == InsertionType::lattice) {
+    solids = lattice_count(entry, box) * sphere;
+  } else if (entry.fraction > 0) {
+    solids = entry.fraction * size.prod();
+  } else if (entry.number_density > 0) {
+    solids = entry.number_density * size.prod() * sphere;
+  }
+  return solids / (size + Vector3::Constant(2 * margin)).prod();
+}
+
 std::vector<std::string> particle_warnings(const Scene& scene) {
   const ParticleSettings& particles = scene.particles;
   double least = std::numeric_limits<double>::infinity();  // [kg/m³]

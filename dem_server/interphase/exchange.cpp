@@ -162,7 +162,7 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
     if (fluid.solved) {
       const Vector3 u = offer.weights.gather(i, fluid.velocity, no_vector);
       drag = offer.window * offer.coefficient[i] * (u - offer.velocity[i]);
-      if (settings.pressure_gradient) {
+      if (settings.pressure_gradient && !offer.initial) {
         const Vector3 gradient = offer.weights.gather(i, fluid.pressure_gradient, no_vector);
         pressure = -bulk.volume[i] * gradient;
         if (!offer.returned.empty()) drag += offer.window * offer.returned[i] * gradient;

@@ -110,6 +110,7 @@ class FluidView {
 struct Offer {
   double window = 0;    ///< Δt [s] over which the fluid answers
   bool initial = true;  ///< made at time 0: the fluid never steps with it, so it has drag only
+                        ///< (first_window.hpp)
   ParticleCellWeights weights;
   std::vector<double> coefficient;  ///< k [kg/s], one a particle
   std::vector<Vector3> velocity;    ///< v* − l [m/s], one a particle
@@ -137,7 +138,8 @@ void measure_bulk(const ParticleState& particles, ParticleBulk& bulk);
 
 /// The forces of the window of `length` [s] that begins, from the committed offer and the fluid's
 /// answer to it. The drag impulse is that of the fluid's own step, whatever the length of this
-/// window. Throws NumericsError (particle, step) if one is not finite.
+/// window, and of an initial offer it is all. Throws NumericsError (particle, step) if one is not
+/// finite.
 void window_forces(const ExchangeSettings& settings, const Offer& offer, const FluidSeen& fluid,
                    const ParticleState& particles, const ParticleBulk& bulk, std::int64_t step,
                    double length, WindowForces& forces);

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "dem_server/interphase/first_window.hpp"
 #include "dem_server/interphase/prediction.hpp"
 #include "proto/base/compensated_sum.hpp"
 
@@ -27,7 +28,7 @@ void LateExchange::offer(const Here& here, const Window& window, const Fields& i
     places_.id = here.particles.id;
     places_.position = here.particles.position;
   }
-  find_forces(here, window, fluid, view, standing);
+  find_forces(here, window, fluid, maker, view, standing);
 
   velocity_ = here.particles.velocity;
   velocities_ahead(settings, here.particles, bulk_,
@@ -45,12 +46,15 @@ void LateExchange::offer(const Here& here, const Window& window, const Fields& i
 }
 
 void LateExchange::find_forces(const Here& here, const Window& window, const FluidSeen& fluid,
-                               FluidView& view, const Offer& standing) {
+                               OfferMaker& maker, FluidView& view, Offer& standing) {
   const ExchangeSettings& settings = here.settings;
   departed_.setZero();
-  if (!fluid.solved) {  // buoyancy alone
-    window_forces(settings, standing, fluid, here.particles, bulk_, window.step, window.length,
-                  forces_);
+  if (!fluid.solved) {
+    first_forces(settings,
+                 {window.step, window.length, here.particles, bulk_, here.voidage,
+                  here.cell_volumes, here.add_up},
+                 fluid, maker, view, standing, forces_);
+    deposit_vectors(standing.weights, forces_.impulse, settings.threads, impulse_given_);
     return;
   }
   // No rows and others than before: all have left.

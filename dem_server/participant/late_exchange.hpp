@@ -25,8 +25,10 @@ class LateExchange {
   struct Here {
     const ExchangeSettings& settings;
     const ParticleState& particles;
-    std::span<const double> voidage;  ///< of their positions, one a cell
-    bool rows_change;                 ///< whether particles can come in or leave
+    std::span<const double> voidage;       ///< of their positions, one a cell
+    std::span<const double> cell_volumes;  ///< [m³]
+    bool rows_change;                      ///< whether particles can come in or leave
+    AddUp add_up{};
   };
 
   /// Forget everything: nothing was offered yet.
@@ -39,6 +41,9 @@ class LateExchange {
   void offer(const Here& here, const Window& window, const Fields& in, OfferMaker& maker,
              FluidView& view, Offer& standing);
 
+  /// Whether what is given in the window is lent, to be taken back with the offer: in the first
+  /// one.
+  bool lends() const { return answered_.initial; }
   /// Whether the window that is to be advanced has its offer.
   bool offered() const { return offered_; }
   std::span<const Vector3> force() const { return forces_.force; }  ///< of the window [N]
@@ -62,8 +67,8 @@ class LateExchange {
   double last_length() const { return past_length_; }  ///< [s] of that window; 0: there was none
 
  private:
-  void find_forces(const Here& here, const Window& window, const FluidSeen& fluid, FluidView& view,
-                   const Offer& standing);
+  void find_forces(const Here& here, const Window& window, const FluidSeen& fluid,
+                   OfferMaker& maker, FluidView& view, Offer& standing);
   void match_rows(const Here& here);
 
   // Committed: the past of the particles that are there now.

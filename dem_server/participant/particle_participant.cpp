@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "dem_server/interphase/first_window.hpp"
 #include "dem_server/interphase/prediction.hpp"
 #include "dem_server/participant/precision_error.hpp"
 #include "proto/base/compensated_sum.hpp"
@@ -124,10 +125,20 @@ void ParticleParticipant::advance(const Window& window, const Fields& in, Fields
 void ParticleParticipant::advance_and_offer(const Window& window, const Fields& in, Fields& out,
                                             const Progress& progress) {
   const int cells = static_cast<int>(cell_volumes_.size());
-  const FluidSeen fluid = fluid_seen(settings_, in, cells, !committed_.initial);
+  const bool first = committed_.initial;
+  const FluidSeen fluid = fluid_seen(settings_, in, cells, !first);
   measure_bulk(engine_->particles(), bulk_);
-  window_forces(settings_, committed_, fluid_view_.of(fluid, committed_.weights),
-                engine_->particles(), bulk_, window.step, window.length, forces_);
+  if (first) {
+    map_voidage(committed_.weights, bulk_.volume, cell_volumes_, *excess_, 0, settings_.threads,
+                voidage_, add_up());  // of time 0, also if the window is repeated
+    first_forces(settings_,
+                 {window.step, window.length, engine_->particles(), bulk_, voidage_, cell_volumes_,
+                  add_up()},
+                 fluid, offer_maker_, fluid_view_, committed_, forces_);
+  } else {
+    window_forces(settings_, committed_, fluid_view_.of(fluid, committed_.weights),
+                  engine_->particles(), bulk_, window.step, window.length, forces_);
+  }
   velocity_before_ = engine_->particles().velocity;
 
   move_particles(window, forces_.force, bulk_, progress);
@@ -141,7 +152,7 @@ void ParticleParticipant::advance_and_offer(const Window& window, const Fields& 
                     candidate_);
   // By the weights the impulse was computed with: those are what the fluid answered to.
   deposit_vectors(committed_.weights, forces_.impulse, settings_.threads, impulse_given_);
-  publish_offer(candidate_, out);
+  publish_offer(candidate_, out, first ? impulse_given_ : std::span<const Vector3>{});
   publish_state(impulse_given_, out);
 }
 
@@ -150,9 +161,11 @@ void ParticleParticipant::offer(const Window& window, const Fields& in, Fields& 
   const auto began = SteadyClock::now();
   if (!late_) Participant::offer(window, in, out, progress);
   require_settled("make an offer for", window.step);
-  late_->offer({settings_, engine_->particles(), late_->voidage(), flow_.has_value()}, window, in,
-               offer_maker_, fluid_view_, committed_);
-  publish_offer(committed_, out);
+  late_->offer({settings_, engine_->particles(), late_->voidage(), cell_volumes_, flow_.has_value(),
+                add_up()},
+               window, in, offer_maker_, fluid_view_, committed_);
+  publish_offer(committed_, out,
+                late_->lends() ? late_->impulse_given() : std::span<const Vector3>{});
   out.add_number(field::wall_seconds, seconds_since(began));
 }
 
@@ -179,19 +192,25 @@ void ParticleParticipant::move_particles(const Window& window, std::span<const V
   map_particles(window.step);
 }
 
+AddUp ParticleParticipant::add_up() const {
+  return [this](std::span<double> values) { engine_->add_up(values); };
+}
+
 void ParticleParticipant::map_particles(std::int64_t step) {
   const ParticleState& particles = engine_->particles();
   measure_bulk(particles, bulk_);
   builder_->build(particles, step, candidate_.weights);
-  const AddUp add_up = [this](std::span<double> values) { engine_->add_up(values); };
   excess_moved_ = map_voidage(candidate_.weights, bulk_.volume, cell_volumes_, *excess_, step,
-                              settings_.threads, voidage_, add_up);
+                              settings_.threads, voidage_, add_up());
   map_velocity(candidate_.weights, bulk_.volume, particles.velocity, settings_.threads,
-               cell_solids_, particle_velocity_, add_up);
+               cell_solids_, particle_velocity_, add_up());
 }
 
-void ParticleParticipant::publish_offer(const Offer& offer, Fields& out) {
+/// `lent`: impulse that the particles have before the fluid gave it [N s], one row a cell.
+void ParticleParticipant::publish_offer(const Offer& offer, Fields& out,
+                                        std::span<const Vector3> lent) {
   deposit_offer(offer, settings_.threads, drag_coefficient_, drag_source_);
+  if (!lent.empty()) take_back(lent, offer.window, drag_source_);
   engine_->add_up(drag_coefficient_);
   engine_->add_up(numbers_in(drag_source_));
   out.add(field::drag_coefficient, drag_coefficient_);

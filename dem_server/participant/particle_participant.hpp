@@ -33,6 +33,7 @@ class ParticleParticipant : public Participant {
   void configure(const Scene& scene, const Mesh& mesh) override;
 
   /// `in` may hold the fluid's initial velocity; without it the drag coefficient is that at u = 0.
+  /// The first window finds its own (first_window.hpp).
   void start(const Fields& in, Fields& out) override;
 
   /// Needs velocity and pressure_gradient of the committed fluid state, one row a cell, and what
@@ -67,8 +68,10 @@ class ParticleParticipant : public Participant {
   void move_particles(const Window& window, std::span<const Vector3> force,
                       const ParticleBulk& bulk, const Progress& progress);
   void map_particles(std::int64_t step);
-  void publish_offer(const Offer& offer, Fields& out);
+  void publish_offer(const Offer& offer, Fields& out, std::span<const Vector3> lent = {});
   void publish_state(std::span<Vector3> impulse_given, Fields& out);
+  /// Sums over the processes that share the particles.
+  AddUp add_up() const;
   void warn_of_drag();
 
   std::string backend_;

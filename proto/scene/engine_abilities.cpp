@@ -37,7 +37,7 @@ EngineAbilities abilities_of(ParticleBackend backend) {
     case ParticleBackend::liggghts:
       return {.any_size = true, .fixed = true, .flow = true, .ranks = true};
     case ParticleBackend::yade:
-      return {.fixed = true, .flow = true};
+      return {.any_size = true, .fixed = true, .flow = true};
     case ParticleBackend::custom:
       return {.hertz = true,
               .rolling = true,

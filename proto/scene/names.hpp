@@ -28,6 +28,11 @@ inline constexpr auto enum_names<Continuity> = std::to_array<Named<Continuity>>(
     {Continuity::legacy, "legacy"},
 });
 template <>
+inline constexpr auto enum_names<LegacyVelocity> = std::to_array<Named<LegacyVelocity>>({
+    {LegacyVelocity::faces, "faces"},
+    {LegacyVelocity::cells, "cells"},
+});
+template <>
 inline constexpr auto enum_names<OnViolation> = std::to_array<Named<OnViolation>>({
     {OnViolation::stop, "stop"},
     {OnViolation::warn, "warn"},

@@ -173,11 +173,15 @@ enum class TimeScheme { euler, bdf2 };
 enum class FluidBackend { native };
 enum class LinearSolverChoice { automatic, multigrid, conjugate_gradient };
 
-/// How far the lagged mass source of the legacy continuity is converged within a window.
+/// What carries the voidage in the mass source of the legacy continuity.
+enum class LegacyVelocity { faces, cells };
+
+/// The lagged mass source of the legacy continuity, and how far it is converged within a window.
 struct LegacySettings {
   double tolerance =
       1e-4;  ///< largest change of a face flux between two iterations over the largest flux [-]
   int iterations = 20;
+  LegacyVelocity velocity = LegacyVelocity::faces;
 };
 
 struct FluidNumerics {
@@ -274,8 +278,8 @@ struct PairSettings {
   double friction = 0.3;                       ///< [-]
   /// [-] hard_sphere; default: what the springs and dashpots of the linear law would give
   std::optional<double> tangential_restitution;
-  std::optional<double> rolling_friction;      ///< [-] with a rolling law
-  std::optional<double> rolling_damping;  ///< [-] spring_dashpot: share of critical; default 0.3
+  std::optional<double> rolling_friction;  ///< [-] with a rolling law
+  std::optional<double> rolling_damping;   ///< [-] spring_dashpot: share of critical; default 0.3
   std::optional<double> cohesion_energy_density;  ///< [J/m³] sjkr
   std::optional<double> work_of_adhesion;         ///< [J/m²] jkr
   std::optional<double> liquid_volume;            ///< [m³] liquid_bridge

@@ -231,6 +231,12 @@ void describe(Visit& visit, LegacySettings& legacy) {
         legacy.tolerance);
   visit({.name = "iterations", .range = {.lower = 1}, .meaning = "Most iterations in a window."},
         legacy.iterations);
+  visit(
+      {.name = "velocity",
+       .meaning = "Of a cell, in the mass source: `faces`, the mean of the interstitial velocities "
+                  "of its faces; `cells`, its own, the mean of their superficial velocities over "
+                  "its voidage. Which of them is open in Wu et al. (2009): docs/wu2011."},
+      legacy.velocity);
 }
 
 template <class Visit>
@@ -279,7 +285,7 @@ void describe(Visit& visit, FluidNumerics& numerics) {
          .meaning = "Threads of the fluid solver, fewer on small meshes; 0: all cores. The result "
                     "has the same bits for any number."},
         numerics.threads);
-  visit({.name = "legacy", .meaning = "Convergence of the mass source with `continuity: legacy`."},
+  visit({.name = "legacy", .meaning = "The mass source with `continuity: legacy`."},
         numerics.legacy);
 }
 

@@ -10,6 +10,7 @@ import time
 import unittest
 
 import h5py
+import numpy
 import yaml
 
 BIN = pathlib.Path(os.environ["FLUXPACT_BIN"])
@@ -58,6 +59,12 @@ def small_bed():
         },
         "output": {"fields": {"every": 0.005}, "particles": {"every": 0.01}},
     }
+
+
+def blown_through(scene):
+    """The same with gas that rises from the start on: the particles feel it in the first window."""
+    scene["fluid"]["initial"] = {"superficial": [0, 0, 1.0]}
+    return scene
 
 
 def legacy(scene):
@@ -132,6 +139,20 @@ def read_audit(directory):
     """audit.csv as a list of rows of numbers."""
     with open(directory / "audit.csv", newline="") as file:
         return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def column_vectors(rows, name):
+    """name_x, name_y, name_z of the rows of an audit; one row a window."""
+    return numpy.array([[row[f"{name}_{axis}"] for axis in "xyz"] for row in rows])
+
+
+def handovers(rows):
+    """[N s] What the fluid handed over in each window but the last, and what the particles were given in the one after it. What they are
+    given in the first window is lent: the fluid loses it in the same window, beside what it hands over."""
+    lost = -column_vectors(rows, "momentum_to_fluid")
+    given = column_vectors(rows, "momentum_to_particles")
+    lost[0] -= given[0]
+    return lost[:-1], given[1:]
 
 
 def children(process, name):

@@ -1,4 +1,5 @@
-"""configs/ergun_ramp.yaml: a bed of 10,000 spheres in a cylinder under a gas whose velocity rises through that of minimum fluidisation."""
+"""configs/ergun_ramp.yaml: a bed of 10,000 spheres in a cylinder under a gas whose velocity rises through that of minimum fluidisation; here
+between walls without friction, so that grid and gas alone can bear it."""
 
 import math
 import os
@@ -86,7 +87,10 @@ class ErgunRamp(ProgramTest):
     def run_config(self):
         path = SOURCE / "configs/ergun_ramp.yaml"
         threads = ["--set", "particles.numerics.threads=1", "--set", "fluid.numerics.threads=1"]  # other tests run beside it
-        command = [COORDINATOR, "run", path, "--out", self.out, *threads]
+        smooth = ["--set", "particles.contact.pairs[1].friction=0"]
+        # Until the first bubble, which throws spheres faster than they move up to then.
+        before = ["--set", "scene.end_time=0.77", "--set", "particles.time_step=1.0e-5"]
+        command = [COORDINATOR, "run", path, "--out", self.out, *threads, *smooth, *before]
         done = subprocess.run(command, capture_output=True, text=True, timeout=1400)
         self.assertEqual(done.returncode, EXIT_DONE, f"{done.stdout}\n{done.stderr}\n{self.log()}")
 
@@ -152,13 +156,14 @@ class ErgunRamp(ProgramTest):
             self.assertLess(abs(row["relative_imbalance"]), CONSERVED, row)
         scene = yaml.safe_load((self.out / "scene.yaml").read_text())
         fixed, plateau, carried, broken = self.judge(scene, self.results())
-        # 1 % is asked of the plateau too, and missed by 0.1 %: what follows tells why. What the numerics leave is 0.1 %; the law itself is known to 10 %.
+        # What the numerics leave is 0.1 %; the law itself is known to 10 %.
         self.assertAlmostEqual(fixed.mean(), 1, delta=0.01)
-        # Some 2 % of the weight stays on the grid: beside a flat floor there is more room between the spheres, less drag, and the lowest
-        # ones do not rise. The wall holds back a bed that moves up by some 1 % (without its friction the sum is 1.003).
-        self.assertAlmostEqual(plateau.mean(), 1, delta=0.015)
-        self.assertAlmostEqual(plateau.mean() + carried.mean(), 1, delta=0.015)
+        self.assertAlmostEqual(plateau.mean(), 1, delta=0.01)
         self.assertAlmostEqual(broken, 1, delta=0.03)
+        # What the gas does not bear is on the grid, 1.0 %: beside a flat floor there is more room between the spheres, less drag, and the
+        # lowest ones do not rise. The sum is 1.002, since a bed that expands is being lifted.
+        self.assertGreater(carried.mean(), 0)
+        self.assertAlmostEqual(plateau.mean() + carried.mean(), 1, delta=0.005)
 
 
 if __name__ == "__main__":

@@ -1,42 +1,15 @@
 """A participant that breaks the protocol ends the run with an error that says how; nothing of its window is recorded."""
 
 import subprocess
-import threading
 import unittest
 
-import numpy
-
+from faulty_participant import FAULT_STEP, Faulty, falls_silent, not_finite, voidage_wrong
 from programs import BIN, EXIT_CONSERVATION, EXIT_NUMERICS, EXIT_PARTICIPANT, ProgramTest
-from python_participant import Participant
 from test_python_participant import free_port, porous_block
-
-FAULT_STEP = 5
-
-
-class Faulty(Participant):
-    """Behaves well until step 5, then applies `fault(header, arrays)` to its message, or raises to fall silent."""
-
-    def __init__(self, endpoint, fault):
-        super().__init__(endpoint, voidage=0.5, drag=1000.0)
-        self.fault = fault
-
-    def say(self, kind, body=None, arrays=None):
-        if self.step == FAULT_STEP and kind == "result":
-            body, arrays = dict(body or {}), dict(arrays or {})
-            kind = self.fault(self, body, arrays) or kind
-        super().say(kind, body, arrays)
-
-
-def not_finite(participant, body, arrays):
-    arrays["drag_source"][7, 1] = numpy.nan
 
 
 def voidage_above_one(participant, body, arrays):
     arrays["voidage"][3] = 1.5
-
-
-def voidage_wrong(participant, body, arrays):
-    arrays["voidage"][3] -= 1e-3  # a plausible number, but the particles' volume says otherwise
 
 
 def too_short(participant, body, arrays):
@@ -71,14 +44,6 @@ def says_what_is_unknown(participant, body, arrays):
     return "resulte"
 
 
-class Silence(Exception):
-    pass
-
-
-def falls_silent(participant, body, arrays):
-    raise Silence
-
-
 class Misbehaviour(ProgramTest):
     def provoke(self, fault, expect, *fragments):
         port = free_port()
@@ -89,17 +54,7 @@ class Misbehaviour(ProgramTest):
         fluid = subprocess.Popen([BIN / "cfd_server", "--connect", endpoint], stderr=subprocess.DEVNULL)
         self.addCleanup(self.end, fluid)
         solids = Faulty(endpoint, fault)
-
-        def serve():
-            try:
-                solids.serve()
-            except (Silence, RuntimeError, TimeoutError):
-                pass  # silent on purpose, or told off by the coordinator
-            finally:
-                solids.socket.close()
-
-        thread = threading.Thread(target=serve, daemon=True)
-        thread.start()
+        thread = solids.serve_in_thread()
         _, stderr = process.communicate(timeout=60)
         self.assertEqual(process.returncode, expect, stderr)
         for fragment in fragments:

@@ -2,6 +2,7 @@
 
 import pathlib
 import time
+import unittest
 
 from programs import EXIT_PARTICIPANT, EXIT_USAGE, ProgramTest, children, is_alive, kill, small_bed
 
@@ -71,7 +72,10 @@ class Yade(ProgramTest):
         self.wait_for_windows(process, 3)
         (server,) = children(process, "dem_server")
         below = descendants(server)
-        self.assertTrue(below)
+        (adapter,) = children_of(server)
+        endpoint = pathlib.Path(f"/proc/{adapter}/cmdline").read_text().split("\0")[2]
+        folder = pathlib.Path(endpoint.removeprefix("ipc://")).parent
+        self.assertTrue(folder.is_dir())
         kill(server)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, EXIT_PARTICIPANT)
@@ -79,6 +83,7 @@ class Yade(ProgramTest):
         while any(is_alive(pid) for pid in below) and time.monotonic() < deadline:
             time.sleep(0.05)
         self.assertFalse(any(is_alive(pid) for pid in below))
+        self.assertFalse(folder.exists())
 
     def test_refuses_what_it_cannot_do_under_the_key_that_asks_for_it(self):
         def refused(key, change):
@@ -96,10 +101,23 @@ class Yade(ProgramTest):
         refused("particles.surfaces", particles(surfaces={"a": {"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}}))
         refused("fluid.mesh.periodic", lambda scene: scene["fluid"]["mesh"].update(periodic=["x"]))
         other = {**yade_bed()["particles"]["insertion"][0], "diameter": 1.0e-3, "count": 3}
-        refused("particles.insertion", lambda scene: scene["particles"]["insertion"].append(other))
-        # Found by the server.
-        scene = yade_bed()
-        scene["particles"]["contact"]["pairs"][1]["normal_stiffness"] = 700
-        _, stderr = self.run_scene(scene, expect=EXIT_USAGE)
-        self.assertIn("normal_stiffness of [glass, walls]", stderr)
+        refused("particles.insertion[1]", lambda scene: scene["particles"]["insertion"].append(other))
+        steel = {"within": {"z": [0.05, 0.06]}, "material": "steel", "diameter": 2.0e-3, "number_rate": 10}
 
+        def add_steel(scene):
+            scene["particles"]["materials"]["steel"] = {"density": 7800}
+            scene["particles"]["inflow"] = [steel]
+            scene["particles"]["contact"]["pairs"] += [
+                {"between": ["steel", other], "normal_stiffness": 300} for other in ("glass", "steel", "walls")
+            ]
+
+        refused("particles.inflow[0]", add_steel)
+        # One that stands still may be of any kind.
+        scene = yade_bed()
+        scene["scene"]["end_time"] = 0.001
+        add_steel(scene)
+        del scene["particles"]["inflow"]
+        scene["particles"]["insertion"].append(
+            {"type": "lattice", "material": "steel", "diameter": 1.0e-3, "motion": "fixed", "within": {"z": [0.05, 0.055]}}
+        )
+        self.run_scene(scene)

@@ -67,6 +67,14 @@ double root_between(const Separation& separation, double low, double high);
 /// there is none.
 inline double first_touch(const Separation& separation, double horizon) {
   const double* c = separation.c;
+  if (c[4] == 0) {  // straight: the smaller root, in the form without cancellation
+    if (c[1] >= 0) return never;
+    if (c[0] <= 0) return 0;
+    const double square = c[1] * c[1] - 4 * c[2] * c[0];
+    if (square < 0) return never;
+    const double time = 2 * c[0] / (std::sqrt(square) - c[1]);
+    return time <= horizon ? time : never;
+  }
   // The second derivative, 2 (c2 + 3 c3 t + 6 c4 t²), lies between these two.
   const double bend = 3 * std::abs(c[3]) * horizon;
   if (c[2] - bend >= 0) {  // convex

@@ -139,7 +139,12 @@ void HardSpheres::find_next(int sphere, double now) {
   const double own_speed = here.velocity.norm();
   double horizon = window_ - now;
   find_plane(body, here, sphere, horizon, event);
+  near_.clear();
   cells_.visit_near(sphere, [&](int other, int shift) {
+    __builtin_prefetch(&bodies_[other]);
+    near_.push_back({other, shift});
+  });
+  for (const auto& [other, shift] : near_) {
     const Body& its = bodies_[other];
     const double late = now - its.time;
     const double touch = body.reach + its.reach;
@@ -149,18 +154,18 @@ void HardSpheres::find_next(int sphere, double now) {
         horizon * (own_speed + 0.5 * horizon * body.pull);
     Vector3 apart = its.position - here.position;
     if (shift != Shift::none) apart += shifts_[shift];
-    if (apart.squaredNorm() > (touch + flown_at_most) * (touch + flown_at_most)) return;
-    if (other == sphere) return;
+    if (apart.squaredNorm() > (touch + flown_at_most) * (touch + flown_at_most)) continue;
+    if (other == sphere) continue;
     apart += late * (its.velocity + 0.5 * late * its.acceleration);
     const Vector3 velocity = its.velocity + late * its.acceleration - here.velocity;
     const double closing = horizon * (velocity.norm() + 0.5 * horizon * (body.pull + its.pull));
-    if (apart.squaredNorm() > (touch + closing) * (touch + closing)) return;
+    if (apart.squaredNorm() > (touch + closing) * (touch + closing)) continue;
     const Separation separation(apart, velocity, its.acceleration - body.acceleration, touch);
     const double time = first_touch(separation, horizon);
-    if (time == never) return;
+    if (time == never) continue;
     horizon = time;
     event = {other, its.epoch, shift};
-  });
+  }
   queue_.set(sphere, event.with == nothing ? never : now + horizon);
 }
 

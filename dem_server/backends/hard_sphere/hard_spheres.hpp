@@ -117,6 +117,10 @@ class HardSpheres {
   std::vector<Body> bodies_;
   std::vector<Turning> turning_;
   std::vector<Event> event_;
+  struct Near {
+    int sphere, shift;
+  };
+  std::vector<Near> near_;  // of the one whose next event is sought
   EventQueue queue_;
   EventCells cells_;
   CellGrid order_;

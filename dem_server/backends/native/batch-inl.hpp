@@ -115,16 +115,28 @@ class StoredRows {
     }
   }
   /// To the places of all lanes, one after the other.
-  template <bool mirrored, class Place>
+  template <class Place>
   HWY_INLINE void add_to(Load<Real, turning>* sum, const Place& place) const {
+    for (int k = 0; k < width; ++k) add_lane<false>(k, sum[place(k)]);
+  }
+  /// The same to the holders of pairs, and `theirs` to their partners: pair after pair, so that
+  /// the order of the sums does not hang on which pairs are in a batch.
+  template <class Holder, class Partner>
+  HWY_INLINE void add_to(Load<Real, turning>* sum, const Holder& holder, const StoredRows& theirs,
+                         const Partner& partner) const {
     for (int k = 0; k < width; ++k) {
-      Load<Real, turning>& to = sum[place(k)];
-      add_row<mirrored>(row_[k], to.force);
-      if constexpr (turning) add_row<false>(row_[k] + 4, to.lever);
+      add_lane<false>(k, sum[holder(k)]);
+      theirs.template add_lane<true>(k, sum[partner(k)]);
     }
   }
 
  private:
+  template <bool mirrored>
+  HWY_INLINE void add_lane(int k, Load<Real, turning>& to) const {
+    add_row<mirrored>(row_[k], to.force);
+    if constexpr (turning) add_row<false>(row_[k] + 4, to.lever);
+  }
+
   static constexpr int numbers = turning ? 8 : 4;
   alignas(64) Real row_[width][numbers];
 };
@@ -139,26 +151,38 @@ class RegisterRows {
     rows_ = transpose(d, Eight<V>{{from.force.x, from.force.y, from.force.z, zero},
                                   {from.lever.x, from.lever.y, from.lever.z, zero}});
   }
-  template <bool mirrored, class Place>
+  template <class Place>
   HWY_INLINE void add_to(Load<Real, true>* sum, const Place& place) const {
-    const Lanes<Real> d;
-    const auto mirror = hn::Load(d, Flip<Real>::motion);
-    const auto add = [&](V row, int k) HWY_ATTR {
-      Real* to = sum[place(k)].force;
-      hn::Store(hn::Add(hn::Load(d, to), mirrored ? hn::Xor(row, mirror) : row), d, to);
-    };
-    add(rows_.low.a, 0);
-    add(rows_.low.b, 1);
-    add(rows_.low.c, 2);
-    add(rows_.low.d, 3);
-    add(rows_.high.a, 4);
-    add(rows_.high.b, 5);
-    add(rows_.high.c, 6);
-    add(rows_.high.d, 7);
+    visit([&](auto row, int k) HWY_ATTR { add(row(*this), sum[place(k)]); });
+  }
+  template <class Holder, class Partner>
+  HWY_INLINE void add_to(Load<Real, true>* sum, const Holder& holder, const RegisterRows& theirs,
+                         const Partner& partner) const {
+    const auto mirror = hn::Load(Lanes<Real>(), Flip<Real>::motion);
+    visit([&](auto row, int k) HWY_ATTR {
+      add(row(*this), sum[holder(k)]);
+      add(hn::Xor(row(theirs), mirror), sum[partner(k)]);
+    });
   }
 
  private:
   using V = hn::Vec<Lanes<Real>>;
+  static HWY_INLINE void add(V row, Load<Real, true>& to) {
+    const Lanes<Real> d;
+    hn::Store(hn::Add(hn::Load(d, to.force), row), d, to.force);
+  }
+  /// visit(row of some rows, lane)
+  template <class Visit>
+  static HWY_INLINE void visit(const Visit& visit) {
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.low.a; }, 0);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.low.b; }, 1);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.low.c; }, 2);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.low.d; }, 3);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.high.a; }, 4);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.high.b; }, 5);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.high.c; }, 6);
+    visit([](const RegisterRows& r) HWY_ATTR { return r.rows_.high.d; }, 7);
+  }
   Eight<V> rows_;
 };
 

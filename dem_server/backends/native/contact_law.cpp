@@ -137,11 +137,6 @@ std::vector<Elasticity> elasticities(const ParticleSettings& settings) {
   return all;
 }
 
-/// True if a contact may hold beyond δ = 0, so that it must remember whether it does.
-bool outlasts_touch(CohesionLaw cohesion) {
-  return cohesion == CohesionLaw::liquid_bridge || cohesion == CohesionLaw::jkr;
-}
-
 }  // namespace
 
 double sphere_mass(double radius, double density) {
@@ -161,6 +156,19 @@ double damping_coefficient(const PairLaw& law, double effective_mass) {
 int spring_rows(const ContactModel& model) {
   if (model.rolling == RollingLaw::spring_dashpot) return 2;
   return model.friction || outlasts_touch(model.cohesion) ? 1 : 0;
+}
+
+SpringNumbers spring_numbers(const ContactModel& model) {
+  SpringNumbers numbers;
+  const auto add = [&numbers](int first, int last) {
+    for (int place = first; place < last; ++place) {
+      numbers.place[numbers.count++] = static_cast<std::uint8_t>(place);
+    }
+  };
+  if (model.friction) add(0, 3);
+  if (outlasts_touch(model.cohesion)) add(3, 4);
+  if (model.rolling == RollingLaw::spring_dashpot) add(4, 7);
+  return numbers;
 }
 
 ContactLaws::ContactLaws(const ParticleSettings& settings, const std::optional<Film>& film) {

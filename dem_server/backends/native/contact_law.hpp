@@ -3,7 +3,9 @@
 // when the engine is made; the force itself is in contact_force-inl.hpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +27,21 @@ struct ContactModel {
 /// first the tangential spring [m] and whether a bridge or an adhesive contact holds (with
 /// friction, liquid_bridge or jkr), then the rolling spring [rad] and 0 (spring_dashpot).
 int spring_rows(const ContactModel& model);
+
+/// The numbers of those rows that the laws of a model use, in the order in which pairs keep them.
+struct SpringNumbers {
+  int count = 0;
+  std::array<std::uint8_t, 7> place{};  ///< of each: four times the row, and its place in the row
+
+  /// True for those that look the same from both partners; the others change their sign.
+  bool is_even(int n) const { return place[n] % 4 == 3; }
+};
+SpringNumbers spring_numbers(const ContactModel& model);
+
+/// True if a contact may hold beyond δ = 0, so that it must remember whether it does.
+inline bool outlasts_touch(CohesionLaw cohesion) {
+  return cohesion == CohesionLaw::liquid_bridge || cohesion == CohesionLaw::jkr;
+}
 
 /// What the force of a contact reads, one number a column; m* = m_i m_j/(m_i + m_j) and
 /// R* = r_i r_j/(r_i + r_j) belong to the two particles.

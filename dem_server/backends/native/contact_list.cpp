@@ -17,9 +17,11 @@ struct Sources {
   const SizeLevels& levels;
   const Resorting& resorting;
   const ContactList<Real>* before;
+  const std::vector<BlockSprings<Real>>& springs;  // of the list before
   std::array<Vector3, 27> shifts;
-  int spring_rows;  // of each contact
-  double reach;     // [m] between surfaces, within which a pair is listed
+  SpringNumbers numbers;  // of each pair
+  int spring_rows;        // of each contact with a wall
+  double reach;           // [m] between surfaces, within which a pair is listed
 
   int law(const ContactList<Real>& list, int i, int other_material) const {
     return scope.laws.index(material_of_row[list.row[i]], other_material);
@@ -34,7 +36,7 @@ struct FormerPair {
 /// The springs of a pair in the old list, or none.
 template <class Real>
 struct Held {
-  const SpringRow<Real>* rows = nullptr;
+  const Real* numbers = nullptr;
   bool mirrored = false;  // the partner held it
 };
 
@@ -48,24 +50,26 @@ int find_pair(const std::vector<Pair>& pairs, int mine, int other, int shift) {
 }
 
 template <class Real>
-Held<Real> find_springs(const ContactList<Real>& list, const FormerPair& pair) {
+Held<Real> find_springs(const ContactList<Real>& list, const std::vector<BlockSprings<Real>>& all,
+                        const FormerPair& pair) {
   const int holder = list.blocks.holding(pair.i);
   const int first = list.blocks.first(holder);
   const ContactBlock<Real>& block = list.block[holder];
+  const BlockSprings<Real>& springs_of = all[holder];
   const auto held = [](const PairSprings<Real>& springs, int contact, bool mirrored) {
     return contact < 0 ? Held<Real>{} : Held<Real>{springs.find(contact), mirrored};
   };
   if (pair.shift != Shift::none) {
-    return held(block.image_springs, find_pair(block.image, pair.i - first, pair.j, pair.shift),
+    return held(springs_of.image, find_pair(block.image, pair.i - first, pair.j, pair.shift),
                 false);
   }
   if (list.blocks.holding(pair.j) != holder) {
-    return held(block.outer_springs, find_pair(block.outer, pair.i - first, pair.j, pair.shift),
+    return held(springs_of.outer, find_pair(block.outer, pair.i - first, pair.j, pair.shift),
                 false);
   }
   const int low = std::min(pair.i, pair.j) - first;
   const int high = std::max(pair.i, pair.j) - first;
-  return held(block.inner_springs, find_pair(block.inner, low, high, pair.shift), pair.i > pair.j);
+  return held(springs_of.inner, find_pair(block.inner, low, high, pair.shift), pair.i > pair.j);
 }
 
 /// The springs that a pair had in the list before.
@@ -80,44 +84,40 @@ Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int 
   const int old_i = from.resorting.previous[i];
   const int old_j = from.resorting.previous[j];
   if (old_i < 0 || old_j < 0) return {};
-  return find_springs(*from.before,
+  return find_springs(*from.before, from.springs,
                       {old_i, old_j, Shift::code(periods[0], periods[1], periods[2])});
 }
 
-/// Springs of the pairs of a new list, of which about `touching` have some; `first` and `base` turn
-/// its places into those of all particles.
+/// Springs of the pairs of a new list; `first` and `base` turn its places into those of all
+/// particles.
 template <class Real, bool turning>
-void fill_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int touching,
-                  int first, int base, PairSprings<Real>& springs) {
+void carry_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int first,
+                   int base, typename ListMaking<Real>::Found& found, ClosePairs<Real>& close) {
+  PairSprings<Real>& springs = found.springs;
   const int count = static_cast<int>(pairs.size());
-  springs.reset(count, from.spring_rows, touching);
-  if (from.before == nullptr || from.spring_rows == 0) return;
+  springs.reset(count, from.numbers, 0);
   for (int contact = 0; contact < count; ++contact) {
+    if (from.before == nullptr || from.numbers.count == 0) break;
     const Pair& pair = pairs[contact];
     const Held<Real> held = former_springs(from, first + pair.mine, base + pair.other, pair.shift);
-    if (held.rows != nullptr) springs.append(contact, held.rows, held.mirrored);
+    if (held.numbers != nullptr) springs.append(contact, held.numbers, 1, held.mirrored);
   }
-  springs.turn();
+  close.bring_back(pairs, springs, found.places);
 }
 
 template <class Real, bool turning>
 void find_pairs(const Sources<Real, turning>& from, int index, const ContactList<Real>& list,
-                FoundPairs& found, ContactBlock<Real>& block) {
+                typename ListMaking<Real>::Found& found, ContactBlock<Real>& block) {
   const int first = list.blocks.first(index);
   const int last = list.blocks.last(index);
   found.inner.clear();
   found.outer.clear();
   found.image.clear();
-  int inner_touching = 0;
-  int outer_touching = 0;
-  int image_touching = 0;
   for (int i = first; i < last; ++i) {
     const Body<Real, turning>& a = from.spheres[i];
     const double reach = a.radius + from.reach;
-    const double touch = a.radius + from.scope.beyond_contact;
     const bool fixed = a.inverse_mass == 0;
-    const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base,
-                         int& touching) {
+    const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base) {
       const Vector3& image = from.shifts[shift];
       for (int j = begin; j < end; ++j) {
         const Body<Real, turning>& b = from.spheres[j];
@@ -131,25 +131,25 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
         const int law = from.law(list, i, from.material_of_row[list.row[j]]);
         pairs.push_back({j - base, static_cast<std::uint16_t>(i - first),
                          static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
-        if (square < (touch + b.radius) * (touch + b.radius)) ++touching;
       }
     };
     from.levels.visit_near(a.position, a.radius, [&](int begin, int end, int shift) {
       if (shift != Shift::none) {
-        add(begin, end, shift, found.image, 0, image_touching);
+        add(begin, end, shift, found.image, 0);
         return;
       }
-      add(begin, std::min(end, first), shift, found.outer, 0, outer_touching);
-      add(std::max(begin, i + 1), std::min(end, last), shift, found.inner, first, inner_touching);
-      add(std::max(begin, last), end, shift, found.outer, 0, outer_touching);
+      add(begin, std::min(end, first), shift, found.outer, 0);
+      add(std::max(begin, i + 1), std::min(end, last), shift, found.inner, first);
+      add(std::max(begin, last), end, shift, found.outer, 0);
     });
   }
   assign_with_room(found.inner, block.inner);
   assign_with_room(found.outer, block.outer);
   assign_with_room(found.image, block.image);
-  fill_springs(from, block.inner, inner_touching, first, first, block.inner_springs);
-  fill_springs(from, block.outer, outer_touching, first, 0, block.outer_springs);
-  fill_springs(from, block.image, image_touching, first, 0, block.image_springs);
+  carry_springs(from, block.inner, first, first, found, block.inner_close);
+  carry_springs(from, block.outer, first, 0, found, block.outer_close);
+  carry_springs(from, block.image, first, 0, found, block.image_close);
+  block.budget.forget();
   find_partners(list.blocks, block);
 }
 
@@ -314,29 +314,36 @@ template <class Real, bool turning>
 void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                        const std::vector<int>& material, const SizeLevels& levels,
                        const Resorting& resorting, ContactList<Real>* before,
-                       std::vector<FoundPairs>& found, ContactList<Real>& list) {
+                       ListMaking<Real>& making, ContactList<Real>& list) {
   const Sources<Real, turning> from{scope,
                                     spheres,
                                     material,
                                     levels,
                                     resorting,
                                     before,
+                                    making.springs,
                                     shift_vectors(scope.domain),
+                                    spring_numbers(scope.laws.model()),
                                     spring_rows(scope.laws.model()),
                                     scope.skin + scope.beyond_contact};
   list.block.resize(list.blocks.count());
-  found.resize(scope.threads);
+  making.found.resize(scope.threads);
   mark_places(from, list);
   if (before != nullptr) {
-    for (ContactBlock<Real>& block : before->block) {
-      block.inner_springs.number();
-      block.outer_springs.number();
-      block.image_springs.number();
+    making.springs.resize(before->block.size());
+#pragma omp parallel for num_threads(scope.threads) schedule(static)
+    for (int b = 0; b < before->blocks.count(); ++b) {
+      BlockSprings<Real>& springs = making.springs[b];
+      springs.take(before->block[b]);
+      springs.inner.number();
+      springs.outer.number();
+      springs.image.number();
     }
+    swap_close_pairs(*before, list);
   }
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
   for (int b = 0; b < list.blocks.count(); ++b) {
-    find_pairs(from, b, list, found[omp_get_thread_num()], list.block[b]);
+    find_pairs(from, b, list, making.found[omp_get_thread_num()], list.block[b]);
     find_planes(from, b, list, list.block[b]);
     find_surfaces(from, b, list, list.block[b].surfaces);
   }
@@ -345,7 +352,7 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
 #define FLUXPACT_INSTANTIATE(Real, turning)                                               \
   template void make_contact_list<Real, turning>(                                         \
       const ContactScope&, std::span<const Body<Real, turning>>, const std::vector<int>&, \
-      const SizeLevels&, const Resorting&, ContactList<Real>*, std::vector<FoundPairs>&,  \
+      const SizeLevels&, const Resorting&, ContactList<Real>*, ListMaking<Real>&,         \
       ContactList<Real>&);
 FLUXPACT_INSTANTIATE(double, false)
 FLUXPACT_INSTANTIATE(double, true)

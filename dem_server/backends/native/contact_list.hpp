@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "dem_server/backends/native/close_pairs.hpp"
 #include "dem_server/backends/native/contact_law.hpp"
 #include "dem_server/backends/native/spheres.hpp"
 #include "dem_server/backends/native/springs.hpp"
@@ -15,14 +16,6 @@
 #include "dem_server/backends/size_levels.hpp"
 
 namespace fluxpact {
-
-/// A pair of neighbours, held by one of the two.
-struct Pair {
-  std::int32_t other = 0;   ///< the partner's place; in its block for an inner pair
-  std::uint16_t mine = 0;   ///< place of the holder in its block
-  std::uint8_t shift = 13;  ///< periods to add to the partner's position (Shift)
-  std::uint8_t law = 0;     ///< row of the table of laws
-};
 
 /// A particle near one of the plane sides of the domain.
 struct NearPlane {
@@ -43,7 +36,8 @@ struct ContactBlock {
   std::vector<Pair> outer;  ///< partner in another block
   std::vector<Pair> image;  ///< across a periodic side
   std::vector<NearPlane> planes;
-  PairSprings<Real> inner_springs, outer_springs, image_springs;
+  ClosePairs<Real> inner_close, outer_close, image_close;
+  CloseBudget budget;  ///< of those
   Springs<Real> plane_springs;
   std::vector<int> partners;  ///< other blocks, and itself across a side, whose particles it reads
   SurfaceContacts<Real> surfaces;
@@ -85,19 +79,54 @@ struct Resorting {
   std::span<const std::array<std::int8_t, 3>> periods;
 };
 
-/// The pairs that a thread has just found, before they take no more room than they need.
-struct FoundPairs {
-  std::vector<Pair> inner, outer, image;
+/// The springs of the pairs of a block.
+template <class Real>
+struct BlockSprings {
+  PairSprings<Real> inner, outer, image;
+
+  void take(const ContactBlock<Real>& block) {
+    block.inner_close.take_springs(inner);
+    block.outer_close.take_springs(outer);
+    block.image_close.take_springs(image);
+  }
+  void bring_back(ContactBlock<Real>& block) const {
+    std::vector<std::int32_t> room;
+    block.inner_close.bring_back(block.inner, inner, room);
+    block.outer_close.bring_back(block.outer, outer, room);
+    block.image_close.bring_back(block.image, image, room);
+  }
+};
+
+/// Room for the making of a list, kept so that it need not be found anew.
+template <class Real>
+struct ListMaking {
+  struct Found {  // what a thread has just found, before it takes no more room than it needs
+    std::vector<Pair> inner, outer, image;
+    PairSprings<Real> springs;
+    std::vector<std::int32_t> places;
+  };
+  std::vector<Found> found;                 // by thread
+  std::vector<BlockSprings<Real>> springs;  // of each block of the list before
 };
 
 /// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already.
 /// `material` of each presented row. Springs of pairs that `before` (the list in the previous
-/// order, or nullptr) holds are carried over. `found`: room for each thread.
+/// order, or nullptr) holds are carried over, and so is the room of its close pairs.
 template <class Real, bool turning>
 void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                        const std::vector<int>& material, const SizeLevels& levels,
                        const Resorting& resorting, ContactList<Real>* before,
-                       std::vector<FoundPairs>& found, ContactList<Real>& list);
+                       ListMaking<Real>& making, ContactList<Real>& list);
+
+/// The room of the close pairs of one list to another.
+template <class Real>
+void swap_close_pairs(ContactList<Real>& a, ContactList<Real>& b) {
+  for (std::size_t k = 0; k < std::min(a.block.size(), b.block.size()); ++k) {
+    std::swap(a.block[k].inner_close, b.block[k].inner_close);
+    std::swap(a.block[k].outer_close, b.block[k].outer_close);
+    std::swap(a.block[k].image_close, b.block[k].image_close);
+  }
+}
 
 /// Fill in whose particles a block reads.
 template <class Real>

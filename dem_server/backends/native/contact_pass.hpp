@@ -2,7 +2,7 @@
 // its velocities and positions. The hot loop of the whole program; the instruction set is chosen
 // when it runs.
 //
-//   start   the state is kept; half a kick with the loads of the window before, then a drift
+//   start   half a kick with the loads of the window before, then a drift
 //   drift   contacts at the new positions, a whole kick, a drift
 //   settle  contacts, half a kick: positions and velocities are at the same time; loads are kept
 //
@@ -38,11 +38,11 @@ struct BlockPass {
   double spring_step = 0;  ///< [s] by which the springs grow
   int first = 0;           ///< particles of the block
   int last = 0;
-  Body<Real, turning>* bodies = nullptr;     ///< all particles; rows of the block move
-  KeptBody<Real, turning>* kept = nullptr;   ///< start: rows of the block are written
-  KeptLoad<Real, turning>* loads = nullptr;  ///< start: read; settle: rows of the block are written
+  Body<Real, turning>* bodies = nullptr;          ///< all particles; rows of the block move
+  const KeptBody<Real, turning>* kept = nullptr;  ///< start: the loads are read
+  KeptLoad<Real, turning>* loads = nullptr;  ///< drives in place of forces; settle: rows of the
+                                             ///< block become loads
   Load<Real, turning>* sum = nullptr;        ///< the loads of the block: summed up, then moved by
-  const Drive<Real>* drive = nullptr;
   const ListedAt* listed_at = nullptr;
   const double* origin = nullptr;  ///< [m] of listed_at
   double reach = 0;                ///< [m] from listed_at, beyond which the list may miss a contact
@@ -53,6 +53,9 @@ struct BlockPass {
   const LawTable<Real>* laws = nullptr;
   double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces
   RootMasses root_masses;
+  double kick = 0;        ///< [m/s] at most, of a particle and a partner together, since they met
+  double usual_room = 0;  ///< [m] of CloseBudget
+  CloseSearch<Real>* search = nullptr;  ///< of the thread
 };
 
 /// Sums up the forces of the contacts of the block (not at the start).
@@ -61,11 +64,16 @@ void sum_contacts(const BlockPass<double, true>& pass);
 void sum_contacts(const BlockPass<float, false>& pass);
 void sum_contacts(const BlockPass<float, true>& pass);
 
-/// Kick and drift by those sums. Returns true if, after a drift, some particle is farther than
-/// `reach` from where the list was made (or not finite).
-bool move_block(const BlockPass<double, false>& pass);
-bool move_block(const BlockPass<double, true>& pass);
-bool move_block(const BlockPass<float, false>& pass);
-bool move_block(const BlockPass<float, true>& pass);
+struct Moved {
+  bool beyond = false;  ///< some particle is farther than `reach` from where the list was made, or
+                        ///< not finite
+  double kick = 0;      ///< [m/s] at most, of a particle of the block
+};
+
+/// Kick and drift by those sums.
+Moved move_block(const BlockPass<double, false>& pass);
+Moved move_block(const BlockPass<double, true>& pass);
+Moved move_block(const BlockPass<float, false>& pass);
+Moved move_block(const BlockPass<float, true>& pass);
 
 }  // namespace fluxpact

@@ -39,6 +39,15 @@ template <class T>
 HWY_INLINE Row<T> load_row(const T* row) {
   return hn::Load(hn::FixedTag<T, 4>(), row);
 }
+/// Three of four numbers, and 0. (A masked load would do, but takes 5 ns.)
+template <class T>
+HWY_INLINE Row<T> load_vector(const T* numbers) {
+  const hn::FixedTag<T, 4> d;
+  const hn::RebindToUnsigned<decltype(d)> bits;
+  using Bits = hn::TFromD<decltype(bits)>;
+  alignas(32) static constexpr Bits three[4] = {~Bits{0}, ~Bits{0}, ~Bits{0}, 0};
+  return hn::And(hn::LoadU(d, numbers), hn::BitCast(d, hn::Load(bits, three)));
+}
 template <class T>
 HWY_INLINE void store_row(Row<T> value, T* row) {
   hn::Store(value, hn::FixedTag<T, 4>(), row);
@@ -76,6 +85,10 @@ struct Row {
 template <class T>
 HWY_INLINE Row<T> load_row(const T* row) {
   return {{row[0], row[1], row[2], row[3]}};
+}
+template <class T>
+HWY_INLINE Row<T> load_vector(const T* numbers) {
+  return {{numbers[0], numbers[1], numbers[2], 0}};
 }
 template <class T>
 HWY_INLINE void store_row(Row<T> value, T* row) {

@@ -22,7 +22,7 @@ namespace fluxpact {
 
 template <class Real>
 struct SavedSprings {
-  PairSprings<Real> inner, outer, image;
+  BlockSprings<Real> pairs;
   Springs<Real> plane, surface;
   std::vector<SurfaceTouch> touches;
 };
@@ -78,9 +78,10 @@ class SoftSpheres final : public ParticleEngine {
   void size_up();
   BodyRow body_of(int row) const;
   void tabulate_sides();
-  void set_drive(std::span<const Vector3> force);
+  void set_drive(std::span<const Vector3> force, bool keep);
   void plan_turns();
   void meet(const BlockPass<Real, turning>& pass) const;
+  double kick(int block) const;
   bool sweep(Phase phase, double time_step, double spring_step);
   void sort_and_list(const Places* places, bool carry_springs);
   Places take_out(std::span<const int> leaving);
@@ -117,8 +118,8 @@ class SoftSpheres final : public ParticleEngine {
   Sizes sizes_;
 
   ParticleState presented_;
-  HugeVector<BodyRow> bodies_;                // of the newest state
-  HugeVector<LoadRow> loads_;                 // of the newest state, between windows
+  HugeVector<BodyRow> bodies_;  // of the newest state
+  HugeVector<LoadRow> loads_;   // of the newest state, between windows; within: drives
   HugeVector<KeptBody<Real, turning>> kept_;  // while there is a candidate: the committed state
   std::array<List, 3> lists_;                 // in use, kept for rollback, being made
   int list_ = 0;
@@ -126,15 +127,16 @@ class SoftSpheres final : public ParticleEngine {
   std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
   std::optional<BeforeExchange> before_exchange_;
   bool has_candidate_ = false;
-  HugeVector<Drive<Real>> drive_;
   BlockTurns turns_;
   HugeVector<Load<Real, turning>> sums_;  // rooms of each thread
+  std::vector<double> kicks_;  // [m/s] of each block, the largest of a particle since blocks met
 
   // Kept between rebuilds so that they need no memory of their own each time.
   SizeLevels levels_;
   std::vector<std::array<std::int8_t, 3>> periods_;
   std::vector<bool> moved_;
-  std::vector<FoundPairs> found_pairs_;
+  ListMaking<Real> making_;
+  std::vector<CloseSearch<Real>> searches_;  // of each thread
   std::int64_t rebuilds_ = 0;
   std::int64_t sub_steps_ = 0;
 };

@@ -80,7 +80,7 @@ void SoftSpheres<Real, turning>::sort_and_list(const Places* places, bool carry_
       domain_, walls_, surface_materials_, laws_, sizes_.skin, sizes_.beyond_contact, threads_};
   make_contact_list<Real, turning>(scope, bodies_, presented_.material, levels_,
                                    {places != nullptr ? previous : order, periods_},
-                                   carry_springs ? &before : nullptr, found_pairs_, list);
+                                   carry_springs ? &before : nullptr, making_, list);
   list.time = placed_at_;
   list_ = made;
   plan_turns();
@@ -91,6 +91,8 @@ void SoftSpheres<Real, turning>::sort_and_list(const Places* places, bool carry_
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::plan_turns() {
   const List& list = lists_[list_];
+  kicks_.resize(list.blocks.count(), 0);
+  searches_.resize(threads_);
   turns_.plan(list.blocks.count(), threads_for(list.blocks),
               [&](int block) -> const std::vector<int>& { return list.block[block].partners; });
 }

@@ -5,26 +5,30 @@
 
 namespace fluxpact {
 
+/// What close pairs have beyond their flight: few more pairs against going through lists more
+/// often.
+inline constexpr double usual_room_per_skin = 0.02;
+
+/// Drives in place of the forces of contacts; at the start of a window the state is `kept` first.
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
+void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force, bool keep) {
   const int count = presented_.size();
-  if (static_cast<int>(force.size()) != count) {
-    throw NumericsError("force on the particles: {} rows for {} particles", force.size(), count);
-  }
-  drive_.resize(count);
   int bad = count;
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
+    if (keep) kept_[i] = kept(bodies_[i], loads_[i]);
     const int row = lists_[list_].row[i];
     const double inverse_mass = static_cast<double>(bodies_[i].inverse_mass);
     const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
     const Vector3 drive = fall + force[row] * inverse_mass;
     for (int axis = 0; axis < 3; ++axis) {
-      drive_[i].acceleration[axis] = static_cast<Real>(drive[axis]);
+      loads_[i].force[axis] = static_cast<Real>(drive[axis]);
     }
     if (!drive.allFinite()) bad = std::min(bad, row);
   }
-  if (bad < count) refuse_force(presented_.id[bad], force[bad]);
+  if (bad == count) return;
+  rollback();
+  refuse_force(presented_.id[bad], force[bad]);
 }
 
 /// One phase of all blocks. True if the list must be made anew.
@@ -42,7 +46,6 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.bodies = bodies_.data();
   all.kept = kept_.data();
   all.loads = loads_.data();
-  all.drive = drive_.data();
   all.listed_at = list.listed_at.data();
   all.origin = list.origin.data();
   all.reach = list.reach;
@@ -51,6 +54,7 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.laws = &law_table_;
   all.beyond_contact = sizes_.beyond_contact;
   all.root_masses = sizes_.root_masses;
+  all.usual_room = usual_room_per_skin * sizes_.skin;
   const auto pass_of = [&](int thread, int b) {
     BlockPass<Real, turning> pass = all;
     pass.first = blocks.first(b);
@@ -58,7 +62,14 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     pass.sum = sums_.data() + thread * of_thread +
                static_cast<std::ptrdiff_t>(turns_.room(b)) * blocks.block_size;
     pass.contacts = &list.block[b];
+    pass.search = &searches_[thread];
     return pass;
+  };
+  const auto move = [&](int thread, int b) {
+    const Moved moved = move_block(pass_of(thread, b));
+    // Blocks do not meet between two windows, where a kick has two halves.
+    kicks_[b] = phase == Phase::start ? kicks_[b] + moved.kick : moved.kick;
+    return moved.beyond;
   };
   bool beyond = false;
 #pragma omp parallel num_threads(threads) reduction(|| : beyond)
@@ -67,10 +78,14 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     for (int thread = 0; thread < threads; ++thread) {
       const int first = turns_.first(thread);
       for (int b = first; b < turns_.first(thread + 1); ++b) {
-        if (phase != Phase::start) meet(pass_of(thread, b));
+        if (phase != Phase::start) {
+          BlockPass<Real, turning> pass = pass_of(thread, b);
+          pass.kick = kick(b);
+          meet(pass);
+        }
         for (int read = first; read <= b; ++read) {
           if (turns_.last_reader(read) != b) continue;
-          const bool one = move_block(pass_of(thread, read));
+          const bool one = move(thread, read);
           beyond = beyond || one;
         }
       }
@@ -79,12 +94,22 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
     for (int thread = 0; thread < threads; ++thread) {
       for (int b = turns_.first(thread); b < turns_.first(thread + 1); ++b) {
         if (turns_.last_reader(b) != blocks.count()) continue;
-        const bool one = move_block(pass_of(thread, b));
+        const bool one = move(thread, b);
         beyond = beyond || one;
       }
     }
   }
   return beyond;
+}
+
+/// The largest kick since blocks met, of a particle of a block and a partner together [m/s].
+template <class Real, bool turning>
+double SoftSpheres<Real, turning>::kick(int block) const {
+  double theirs = kicks_[block];
+  for (const int read : lists_[list_].block[block].partners) {
+    theirs = std::max(theirs, kicks_[read]);
+  }
+  return kicks_[block] + theirs;
 }
 
 /// The forces of the contacts of one block.
@@ -108,11 +133,15 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
     sizes_.limit = step_limit(laws_, presented_, walls_present_);
   }
   check_time_step(sizes_.limit, time_step);
-  set_drive(force);
+  if (static_cast<int>(force.size()) != presented_.size()) {
+    throw NumericsError("force on the particles: {} rows for {} particles", force.size(),
+                        presented_.size());
+  }
   save_springs();
   kept_.resize(bodies_.size());
-  plan_turns();
   has_candidate_ = true;
+  set_drive(force, true);
+  plan_turns();
   bool beyond = sweep(Phase::start, time_step, 0);
   for (int step = 1; step <= sub_steps; ++step) {
     place_walls(time_ + step * time_step);
@@ -120,7 +149,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
       check(time_step, step, sub_steps);
       check_surfaces();  // what this list has noted would go with it
       sort_and_list(nullptr, true);
-      set_drive(force);
+      set_drive(force, false);
     }
     const Phase phase = step < sub_steps ? Phase::drift : Phase::settle;
     beyond = sweep(phase, time_step, time_step);
@@ -192,9 +221,7 @@ void SoftSpheres<Real, turning>::save_springs() {
   for (int b = 0; b < list.blocks.count(); ++b) {
     const ContactBlock<Real>& block = list.block[b];
     SavedSprings<Real>& saved = saved_springs_[b];  // its memory is used again
-    saved.inner.keep(block.inner_springs);
-    saved.outer.keep(block.outer_springs);
-    saved.image.keep(block.image_springs);
+    saved.pairs.take(block);
     saved.plane.keep(block.plane_springs);
     saved.surface.keep(block.surfaces.springs);
     saved.touches = block.surfaces.touches;
@@ -203,12 +230,11 @@ void SoftSpheres<Real, turning>::save_springs() {
 
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::bring_back_springs() {
+  for (ContactBlock<Real>& block : lists_[list_].block) block.budget.forget();
   for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
     ContactBlock<Real>& block = lists_[list_].block[b];
     const SavedSprings<Real>& saved = saved_springs_[b];
-    block.inner_springs.keep(saved.inner);
-    block.outer_springs.keep(saved.outer);
-    block.image_springs.keep(saved.image);
+    saved.pairs.bring_back(block);
     block.plane_springs.keep(saved.plane);
     block.surfaces.springs.keep(saved.surface);
     block.surfaces.touches = saved.touches;
@@ -220,6 +246,7 @@ template <class Real, bool turning>
 void SoftSpheres<Real, turning>::rollback() {
   if (!has_candidate_) return;
   has_candidate_ = false;
+  if (list_ != committed_list_) swap_close_pairs(lists_[list_], lists_[committed_list_]);
   list_ = committed_list_;
   if (before_exchange_) {
     presented_ = std::move(before_exchange_->presented);

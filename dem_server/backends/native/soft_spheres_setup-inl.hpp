@@ -63,7 +63,6 @@ SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, Co
   std::iota(lists_[list_].row.begin(), lists_[list_].row.end(), 0);
   check(0, 0, 0);
   loads_.resize(count);
-  drive_.resize(count);
   sort_and_list(nullptr, false);
   // Forces of contacts that exist from the start, with their springs at rest.
   sweep(Phase::settle, 0, 0);

@@ -46,19 +46,19 @@ struct InnerPairs {
   static constexpr auto name = "inner";
   static constexpr bool in_block = true;
   static auto& rows(auto& block) { return block.inner; }
-  static auto& springs(auto& block) { return block.inner_springs; }
+  static auto& close(auto& block) { return block.inner_close; }
 };
 struct OuterPairs {
   static constexpr auto name = "outer";
   static constexpr bool in_block = false;
   static auto& rows(auto& block) { return block.outer; }
-  static auto& springs(auto& block) { return block.outer_springs; }
+  static auto& close(auto& block) { return block.outer_close; }
 };
 struct ImagePairs {
   static constexpr auto name = "image";
   static constexpr bool in_block = false;
   static auto& rows(auto& block) { return block.image; }
-  static auto& springs(auto& block) { return block.image_springs; }
+  static auto& close(auto& block) { return block.image_close; }
 };
 struct PlaneContacts {
   static constexpr auto name = "planes";
@@ -91,7 +91,8 @@ inline std::string state_name(const char* kind, const char* column) {
 /// The rows of all blocks one after the other, column by column, and the numbers of the springs of
 /// each contact.
 template <class Kind, class Real>
-void store_kind(const std::vector<ContactBlock<Real>>& blocks, EngineState& state) {
+void store_kind(const std::vector<ContactBlock<Real>>& blocks, int spring_rows,
+                EngineState& state) {
   std::vector<double>& counts = state.add_scalars(state_name(Kind::name, "of_block"));
   for (const auto& block : blocks) {
     counts.push_back(static_cast<double>(Kind::rows(block).size()));
@@ -106,7 +107,13 @@ void store_kind(const std::vector<ContactBlock<Real>>& blocks, EngineState& stat
   });
   std::vector<double>& springs = state.add_scalars(state_name(Kind::name, "springs"));
   for (const auto& block : blocks) {
-    Kind::springs(block).store(springs);
+    if constexpr (requires { Kind::close(block); }) {
+      PairSprings<Real> taken;
+      Kind::close(block).take_springs(taken);
+      taken.store(spring_rows, springs);
+    } else {
+      Kind::springs(block).store(springs);
+    }
   }
 }
 
@@ -200,7 +207,8 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
     }
     for (const LoadRow& load : loads_) lever.push_back(as_vector(load.lever));
   }
-  visit_kinds([&]<class Kind>(Kind) { store_kind<Kind>(list.block, state); });
+  visit_kinds(
+      [&]<class Kind>(Kind) { store_kind<Kind>(list.block, spring_rows(laws_.model()), state); });
   store_surfaces(list.block, state);
 }
 
@@ -215,11 +223,12 @@ inline std::vector<std::size_t> read_parts(const StateReader& state, const std::
 }
 
 template <class Kind, class Real, class Limits>
-void restore_kind(const StateReader& state, int spring_rows, const Limits& limits,
+void restore_kind(const StateReader& state, const ContactModel& model, const Limits& limits,
                   std::vector<ContactBlock<Real>>& blocks) {
   std::size_t sum = 0;
   const auto parts = read_parts(state, state_name(Kind::name, "of_block"), blocks.size(), sum);
-  const auto each = 4 * static_cast<std::size_t>(spring_rows);
+  const int rows_each = spring_rows(model);
+  const auto each = 4 * static_cast<std::size_t>(rows_each);
   const auto springs = state.scalars(state_name(Kind::name, "springs"), sum * each);
   std::size_t first = 0;
   for (std::size_t b = 0; b < blocks.size(); first += parts[b++]) {
@@ -238,7 +247,15 @@ void restore_kind(const StateReader& state, int spring_rows, const Limits& limit
           }
         });
     const auto here = springs.subspan(first * each, parts[b] * each);
-    Kind::springs(blocks[b]).restore(static_cast<int>(parts[b]), spring_rows, here);
+    const int count = static_cast<int>(parts[b]);
+    if constexpr (requires { Kind::close(blocks[b]); }) {
+      PairSprings<Real> stored;
+      std::vector<std::int32_t> room;
+      stored.restore(count, spring_numbers(model), rows_each, here);
+      Kind::close(blocks[b]).bring_back(rows, stored, room);
+    } else {
+      Kind::springs(blocks[b]).restore(count, rows_each, here);
+    }
   }
 }
 
@@ -306,9 +323,8 @@ auto SoftSpheres<Real, turning>::restored_list(const StateReader& state, int cou
     return StateLimits{list.blocks.last(block) - list.blocks.first(block), count, laws_.count(),
                        walls_.size()};
   };
-  visit_kinds([&]<class Kind>(Kind) {
-    restore_kind<Kind>(state, spring_rows(laws_.model()), limits, list.block);
-  });
+  visit_kinds(
+      [&]<class Kind>(Kind) { restore_kind<Kind>(state, laws_.model(), limits, list.block); });
   for (ContactBlock<Real>& block : list.block) find_partners(list.blocks, block);
   restore_surfaces(state, laws_.walls(), walls_.element_codes(), limits, list.block);
   for (std::size_t i = 0; i < rows; ++i) {

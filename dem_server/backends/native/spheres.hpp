@@ -42,7 +42,8 @@ struct alignas(4 * sizeof(Real)) Load<Real, false> {
   Real force[4];
 };
 
-/// The same between two windows, without the zeros.
+/// The same between two windows, without the zeros. Within a window `force` is what drives the
+/// particle beside its contacts [m/s²].
 template <class Real, bool turning>
 struct KeptLoad {
   Real force[3];
@@ -50,7 +51,7 @@ struct KeptLoad {
 };
 template <class Real>
 struct KeptLoad<Real, false> {
-  Real force[3];
+  Real force[4];  // the last number is 0
 };
 
 /// Of a body and its load what changes: the committed state while a window runs.
@@ -86,7 +87,7 @@ void put_back(const KeptBody<Real, turning>& row, Body<Real, turning>& body) {
 }
 template <class Real, bool turning>
 KeptLoad<Real, turning> kept(const Load<Real, turning>& load) {
-  KeptLoad<Real, turning> row;
+  KeptLoad<Real, turning> row{};
   std::copy_n(load.force, 3, row.force);
   if constexpr (turning) std::copy_n(load.lever, 3, row.lever);
   return row;
@@ -98,12 +99,6 @@ Load<Real, turning> full(const KeptLoad<Real, turning>& row) {
   if constexpr (turning) std::copy_n(row.lever, 3, load.lever);
   return load;
 }
-
-/// What drives a particle beside its contacts, constant over a window [m/s²]; the last number is 0.
-template <class Real>
-struct alignas(4 * sizeof(Real)) Drive {
-  Real acceleration[4];
-};
 
 /// Equal ranges of particles: the unit of work. They depend on the number of particles only, and
 /// each sum runs within a block, so that any number of threads gives the same bits.

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <vector>
 
+#include "dem_server/backends/native/contact_law.hpp"
 #include "dem_server/backends/native/huge_vector.hpp"
 
 namespace fluxpact {
@@ -19,12 +19,6 @@ template <class Real>
 struct alignas(4 * sizeof(Real)) SpringRow {
   Real number[4];
 };
-
-/// The same seen from the partner.
-template <class Real>
-SpringRow<Real> mirrored_row(const SpringRow<Real>& row) {
-  return {{-row.number[0], -row.number[1], -row.number[2], row.number[3]}};
-}
 
 /// Rows of a stored state, number by number.
 template <class Real>
@@ -92,167 +86,107 @@ struct Springs {
   }
 };
 
-/// Springs of the pairs of one list, of those that touch only: in the order of the pairs, in a
-/// ring. A sub-step goes through the pairs in order; it takes the springs of the sub-step before
-/// from the front and puts its own behind the last, so that the ring needs hardly more room than
-/// there are.
+/// Springs of the pairs of one list, of those only that have some: to be kept for later, or carried
+/// to a new list.
 template <class Real>
 class PairSprings {
  public:
-  int rows_each() const { return rows_each_; }
-
-  // ---- a sub-step ----
-
-  /// Bits of those that have springs, by pair.
-  std::uint8_t& held(int pair) { return held_[pair / 8]; }
-  /// Springs n = 0, 1 ... of the sub-step before.
-  const SpringRow<Real>* before(int n) const { return slot(first_ + n); }
-  /// Those of a pair that touches for the first time.
-  const SpringRow<Real>* unstretched() const { return unstretched_; }
-  /// Room for `more` springs of this sub-step; of the one before those from `oldest` on stay.
-  void make_room(int more, int oldest) {
-    if (fresh_ + more + count_ - oldest > slots_) grow(more, oldest);
-  }
-  /// Where the next `count` of this sub-step go.
-  void put(int count, SpringRow<Real>** rows) {
-    const int place = wrapped(wrapped(first_ + count_) + fresh_);
-    fresh_ += count;
-    if (place + count <= slots_) {  // nearly always
-      SpringRow<Real>* const first = slot(place);
-      for (int n = 0; n < count; ++n) rows[n] = first + std::ptrdiff_t{n} * rows_each_;
-      return;
-    }
-    for (int n = 0; n < count; ++n) rows[n] = slot(place + n);
-  }
-  /// The springs of this sub-step are now those before.
-  void turn() {
-    first_ = wrapped(first_ + count_);
-    count_ = fresh_;
-    fresh_ = 0;
-  }
-
-  // ---- a new list ----
-
   /// None has springs yet; room for as many as are `expected`.
-  void reset(int pairs, int rows_each, int expected) {
+  void reset(int pairs, const SpringNumbers& each, int expected) {
     pairs_ = pairs;
-    rows_each_ = rows_each;
-    first_ = count_ = fresh_ = 0;
-    if (rows_each == 0) return;
-    const std::size_t bytes = (static_cast<std::size_t>(pairs) / 64 + 1) * 8;
-    if (bytes > held_.capacity()) held_.reserve(with_room(bytes));
-    held_.assign(bytes, 0);
-    if (expected > slots_) reserve(expected);
+    each_ = each;
+    numbers_.clear();
+    held_.clear();
+    if (each.count == 0) return;
+    const std::size_t words = static_cast<std::size_t>(pairs) / 64 + 1;
+    if (words > held_.capacity()) held_.reserve(with_room(words));
+    held_.assign(words, 0);
+    const auto numbers = static_cast<std::size_t>(expected) * each_count();
+    if (numbers <= numbers_.capacity()) return;
+    HugeVector<Real>().swap(numbers_);  // first away with the old one
+    numbers_.reserve(with_room(numbers));
   }
-  /// Springs of a pair behind those that have some; `mirrored`: its partner held them.
-  void append(int pair, const SpringRow<Real>* rows, bool mirrored) {
-    make_room(1, 0);
-    SpringRow<Real>* to = nullptr;
-    put(1, &to);
-    for (int r = 0; r < rows_each_; ++r) to[r] = mirrored ? mirrored_row(rows[r]) : rows[r];
-    held_[pair / 8] = static_cast<std::uint8_t>(held_[pair / 8] | 1U << (pair % 8));
+  /// Springs of a pair behind those that have some, its numbers `stride` apart; `mirrored`: its
+  /// partner held them.
+  void append(int pair, const Real* numbers, int stride, bool mirrored) {
+    for (int n = 0; n < each_.count; ++n) {
+      const Real number = numbers[std::ptrdiff_t{n} * stride];
+      numbers_.push_back(mirrored && !each_.is_even(n) ? -number : number);
+    }
+    held_[pair / 64] |= std::uint64_t{1} << (pair % 64);
   }
   /// Call before `find`.
   void number() {
     ranks_.clear();
     int rank = 0;
-    for (std::size_t word = 0; word < held_.size() / 8; ++word) {
+    for (const std::uint64_t bits : held_) {
       ranks_.push_back(rank);
-      rank += std::popcount(bits_of(word));
+      rank += std::popcount(bits);
     }
   }
-  /// The springs of a pair; nullptr if it has none.
-  const SpringRow<Real>* find(int pair) const {
-    const std::uint64_t bits = bits_of(pair / 64);
+  /// The numbers of a pair; nullptr if it has none.
+  const Real* find(int pair) const {
+    if (held_.empty()) return nullptr;
+    const std::uint64_t bits = held_[pair / 64];
     const std::uint64_t bit = std::uint64_t{1} << (pair % 64);
     if ((bits & bit) == 0) return nullptr;
-    return before(ranks_[pair / 64] + std::popcount(bits & (bit - 1)));
+    const int rank = ranks_[pair / 64] + std::popcount(bits & (bit - 1));
+    return numbers_.data() + static_cast<std::size_t>(rank) * each_count();
   }
-
-  // ---- copies ----
-
-  /// A copy, for later.
-  void keep(const PairSprings& other) {
-    reset(other.pairs_, other.rows_each_, other.count_);
-    if (rows_each_ == 0) return;
-    held_ = other.held_;
-    for (int n = 0; n < other.count_; ++n) {
-      std::copy_n(other.before(n), rows_each_, ring_.data() + std::ptrdiff_t{n} * rows_each_);
-    }
-    count_ = other.count_;
-  }
-  /// Of all pairs; zeros where there are none.
-  void store(std::vector<double>& numbers) const {
-    int n = 0;
-    for (int pair = 0; rows_each_ > 0 && pair < pairs_; ++pair) {
-      const bool has = (held_[pair / 8] >> (pair % 8) & 1) != 0;
-      store_rows_of(has ? before(n++) : unstretched(), rows_each_, numbers);
-    }
-  }
-  void restore(int pairs, int rows_each, std::span<const double> numbers) {
-    const auto is_none = [](double number) { return number == 0 && !std::signbit(number); };
-    const std::size_t each = 4 * static_cast<std::size_t>(rows_each);
-    for (const bool counting : {true, false}) {
-      int count = 0;
-      for (int pair = 0; rows_each > 0 && pair < pairs; ++pair) {
-        const auto own = numbers.subspan(pair * each, each);
-        if (std::ranges::all_of(own, is_none)) continue;
-        SpringRow<Real> rows[2];
-        restore_rows_of(own, rows);
-        if (!counting) append(pair, rows, false);
-        ++count;
+  const SpringNumbers& each() const { return each_; }
+  /// Calls visit(pair, numbers) for all pairs that have springs, in order.
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    const Real* next = numbers_.data();
+    for (std::size_t word = 0; word < held_.size(); ++word) {
+      for (std::uint64_t rest = held_[word]; rest != 0; rest &= rest - 1) {
+        visit(static_cast<int>(64 * word) + std::countr_zero(rest), next);
+        next += each_.count;
       }
-      if (counting) reset(pairs, rows_each, count);
     }
-    turn();
+  }
+
+  // ---- in a stored state: the whole rows of all pairs, zeros where there are none ----
+
+  void store(int rows_each, std::vector<double>& numbers) const {
+    const Real* next = numbers_.data();
+    for (int pair = 0; rows_each > 0 && pair < pairs_; ++pair) {
+      const std::size_t first = numbers.size();
+      numbers.resize(first + 4 * static_cast<std::size_t>(rows_each), 0);
+      if ((held_[pair / 64] >> (pair % 64) & 1) == 0) continue;
+      for (int n = 0; n < each_.count; ++n) {
+        numbers[first + each_.place[n]] = static_cast<double>(*next++);
+      }
+    }
+  }
+  void restore(int pairs, const SpringNumbers& each, int rows_each,
+               std::span<const double> numbers) {
+    const std::size_t row = 4 * static_cast<std::size_t>(rows_each);
+    const auto of = [&](int pair) { return numbers.subspan(pair * row, row); };
+    const auto has_some = [](std::span<const double> own) {
+      return std::ranges::any_of(own, [](double number) { return number != 0; });
+    };
+    int count = 0;
+    for (int pair = 0; pair < pairs; ++pair) count += has_some(of(pair)) ? 1 : 0;
+    reset(pairs, each, count);
+    std::array<Real, 7> packed{};
+    for (int pair = 0; pair < pairs; ++pair) {
+      if (!has_some(of(pair))) continue;
+      for (int n = 0; n < each.count; ++n) {
+        packed[n] = static_cast<Real>(of(pair)[each.place[n]]);
+      }
+      append(pair, packed.data(), 1, false);
+    }
   }
 
  private:
-  std::uint64_t bits_of(std::size_t word) const {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, held_.data() + 8 * word, 8);
-    return bits;
-  }
-  int wrapped(int place) const { return place < slots_ ? place : place - slots_; }
-  SpringRow<Real>* slot(int place) {
-    return ring_.data() + std::ptrdiff_t{wrapped(place)} * rows_each_;
-  }
-  const SpringRow<Real>* slot(int place) const {
-    return ring_.data() + std::ptrdiff_t{wrapped(place)} * rows_each_;
-  }
-  /// An empty ring.
-  void reserve(int springs) {
-    slots_ = static_cast<int>(with_room(springs));
-    HugeVector<SpringRow<Real>>().swap(ring_);
-    ring_.resize(static_cast<std::size_t>(slots_) * static_cast<std::size_t>(rows_each_));
-  }
-  /// A larger one: the springs of this sub-step in front, those before at the end.
-  void grow(int more, int oldest) {
-    PairSprings larger;
-    larger.rows_each_ = rows_each_;
-    larger.reserve(fresh_ + more + count_ - oldest);
-    larger.first_ = larger.slots_ - count_;  // below 0 if those before `oldest` take no part
-    for (int n = 0; n < fresh_; ++n) {
-      std::copy_n(slot(wrapped(first_ + count_) + n), rows_each_, larger.slot(n));
-    }
-    for (int n = oldest; n < count_; ++n) {
-      std::copy_n(before(n), rows_each_, larger.slot(larger.first_ + n));
-    }
-    first_ = larger.first_;
-    slots_ = larger.slots_;
-    ring_ = std::move(larger.ring_);
-  }
+  std::size_t each_count() const { return static_cast<std::size_t>(each_.count); }
 
-  HugeVector<SpringRow<Real>> ring_;
-  std::vector<std::uint8_t> held_;
-  std::vector<int> ranks_;  // of the first pair of each 64 bits
-  SpringRow<Real> unstretched_[2] = {};
-  int rows_each_ = 0;
+  HugeVector<Real> numbers_;
+  std::vector<std::uint64_t> held_;  // bits by pair
+  std::vector<int> ranks_;           // of the first pair of each 64 bits
+  SpringNumbers each_;
   int pairs_ = 0;
-  int slots_ = 0;
-  int first_ = 0;
-  int count_ = 0;  // of the sub-step before
-  int fresh_ = 0;  // of this one
 };
 
 }  // namespace fluxpact

@@ -60,7 +60,7 @@ FLUXPACT_CONTACT_STEP void pass_walls(const BlockPass<Real, turning>& pass,
     }
   }
   const LoadRows<Real, turning> loads(out);
-  loads.template add_to<false>(pass.sum, [&](int k) { return contacts[k].mine; });
+  loads.add_to(pass.sum, [&](int k) { return contacts[k].mine; });
 }
 
 /// Contacts with the plane sides of the domain.

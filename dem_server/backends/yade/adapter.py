@@ -11,6 +11,8 @@ window is left, to the bit.
 
 import ctypes
 import os
+import select
+import shutil
 import signal
 import socket
 import sys
@@ -33,11 +35,22 @@ def end_with(parent):
         os._exit(0)
 
 
+def leave_no_folder():
+    """A server that is killed cannot remove the folder of our socket: a small process waits for its end, and does."""
+    watched = os.pidfd_open(SERVER)
+    if os.fork() != 0:
+        os.close(watched)
+        return
+    select.select([watched], [], [])
+    shutil.rmtree(os.path.dirname(ENDPOINT.removeprefix("ipc://")), ignore_errors=True)
+    os._exit(0)
+
+
 end_with(SERVER)
+leave_no_folder()
 
 import msgpack
 import numpy
-import yade
 import zmq
 from yade import utils
 from yade.wrapper import *
@@ -205,7 +218,9 @@ class Keeper:
             theirs.close()
             self.pid, self.line = pid, ours
             return False
-        ours.close()
+        # What belongs to the other: a copy of a copy of a copy would run out of them.
+        os.closerange(3, theirs.fileno())
+        os.closerange(theirs.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
         end_with(me)
         if not theirs.recv(1):  # closed: forgotten
             os._exit(0)
@@ -243,7 +258,7 @@ def answer(scene, call, body, arrays):
 
 
 def serve():
-    peers = [Peer()]  # the last one; sockets of the process that we were copied from must stay as they are
+    peers = [Peer()]  # the last one; those before it are of processes that we were copied from, and never touched
     scene = Scene(peers[-1])
     keeper = Keeper()
     while True:

@@ -92,7 +92,8 @@ class YadeEngine final : public ParticleEngine {
     set_limit();
     check_time_step(limit_, scene.coupling.window / sub_steps(scene));
     check({0, 0, 0});
-    yade_.emplace(yade_adapter());
+    // Sooner than the coordinator takes us for lost.
+    yade_.emplace(yade_adapter(), Milliseconds(std::lround(750 * scene.launch.deadline)));
     configure();
     build(presented_, {});
   }

@@ -22,11 +22,11 @@ namespace fluxpact {
 /// from those of a run that stores nothing).
 ///
 /// Throws ConfigError for particles that are not sound (checked_rows), of which none is free, or
-/// whose free ones are not all alike, for contacts that YADE cannot have (yade_materials), a
-/// sub-step too long for the contacts (step_limit.hpp); SystemError or ProtocolError if YADE does
-/// not start. Its `advance` throws NumericsError for a particle that got lost, is not finite or
-/// moves by more than its radius in a sub-step, as it is at the end of the window; every call may
-/// throw the ProtocolError of a YADE that ended or is silent.
+/// whose free ones are not all alike, for periodic sides, a sub-step too long for the contacts
+/// (step_limit.hpp); SystemError or ProtocolError if YADE does not start. Its `advance` throws
+/// NumericsError for a particle that got lost, is not finite or moves by more than its radius in a
+/// sub-step, as it is at the end of the window; every call may throw the ProtocolError of a YADE
+/// that ended or is silent.
 std::unique_ptr<ParticleEngine> make_yade_engine(const Scene& scene, const Mesh& mesh,
                                                  ParticleState initial);
 

@@ -16,7 +16,7 @@
 namespace fluxpact {
 namespace {
 
-constexpr Milliseconds longest_silence{60'000};
+constexpr Milliseconds time_to_start{60'000};
 constexpr Milliseconds time_to_end{5'000};
 constexpr std::int64_t largest_answer = std::int64_t{1} << 34;  // [bytes] of one array
 
@@ -51,8 +51,8 @@ YadeProcess::PrivateFolder::~PrivateFolder() {
   std::filesystem::remove_all(path, ignored);
 }
 
-YadeProcess::YadeProcess(const std::filesystem::path& adapter)
-    : channel_("ipc://" + (folder_.path / "socket").string(), largest_answer) {
+YadeProcess::YadeProcess(const std::filesystem::path& adapter, Milliseconds silence)
+    : silence_(silence), channel_("ipc://" + (folder_.path / "socket").string(), largest_answer) {
   // A copy of YADE that takes the place of its parent becomes our child.
   if (prctl(PR_SET_CHILD_SUBREAPER, 1) != 0)
     throw SystemError("cannot adopt processes of YADE: {}", std::strerror(errno));
@@ -66,12 +66,14 @@ YadeProcess::YadeProcess(const std::filesystem::path& adapter)
 
 YadeProcess::~YadeProcess() {
   if (!process_) return;
-  // A copy that holds the committed state ends with its parent, and is ours then. All are of the
-  // group that the first was started in.
+  // The copy that holds the committed state, and who waits for our end, are ours now. All are of
+  // the group that the first was started in.
   process_.reset();
-  if (group_ <= 1) return;
-  kill(-group_, SIGKILL);
-  while (waitpid(-group_, nullptr, 0) > 0) {
+  int ended = 0;
+  while ((ended = waitpid(-group_, nullptr, WNOHANG)) >= 0) {
+    if (ended > 0) continue;
+    kill(-group_, SIGKILL);
+    waitpid(-group_, nullptr, 0);
   }
 }
 
@@ -81,20 +83,20 @@ void YadeProcess::fail(const std::string& what) const {
 }
 
 void YadeProcess::await_hello() {
-  const Message hello = wait("start", {});
+  const Message hello = wait("start", time_to_start, {});
   if (hello.header.type != MessageType::hello || integer(hello.header, "pid") != process_->pid())
     fail("said something else than hello");
 }
 
-Message YadeProcess::wait(const std::string& what, const Progress& progress) {
+Message YadeProcess::wait(const std::string& what, Milliseconds silence, const Progress& progress) {
   while (true) {
-    CoordinatorChannel::Wakeup wakeup = channel_.wait({process_->descriptor()}, longest_silence);
+    CoordinatorChannel::Wakeup wakeup = channel_.wait({process_->descriptor()}, silence);
     if (!wakeup.arrival) {
       if (const auto end = process_->ended())
         fail(fmt::format("ended with {} when asked to {}", *end, what));
       if (wakeup.ready.empty()) {
-        fail(fmt::format("has been silent for {} s, asked to {}", longest_silence.count() / 1000,
-                         what));
+        fail(fmt::format("has been silent for {} s, asked to {}",
+                         1e-3 * static_cast<double>(silence.count()), what));
       }
       continue;
     }
@@ -124,7 +126,7 @@ Message YadeProcess::ask(Message& question, const Progress& progress) {
       fail(fmt::format("ended with {} before it was asked to {}", *end, call));
     fail(fmt::format("cannot be asked to {}: {}", call, error.what()));
   }
-  return wait(call, progress);
+  return wait(call, silence_, progress);
 }
 
 void YadeProcess::rollback() {

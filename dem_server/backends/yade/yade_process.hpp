@@ -13,15 +13,15 @@ namespace fluxpact {
 /// One question after another to one YADE. It never outlives us.
 class YadeProcess {
  public:
-  /// Starts YADE with `adapter` and waits until it says hello. Throws SystemError, and what `ask`
-  /// throws.
-  explicit YadeProcess(const std::filesystem::path& adapter);
+  /// Starts YADE with `adapter` and waits until it says hello. `silence`: after which it counts as
+  /// lost. Throws SystemError, and what `ask` throws.
+  YadeProcess(const std::filesystem::path& adapter, Milliseconds silence);
   ~YadeProcess();
   YadeProcess(const YadeProcess&) = delete;
   YadeProcess& operator=(const YadeProcess&) = delete;
 
   /// Sends `question` (made by `yade_question`) and waits for the answer; `progress` is called when
-  /// YADE gives a sign of life. Throws ProtocolError if YADE ended, was silent for a minute, or
+  /// YADE gives a sign of life. Throws ProtocolError if YADE ended, was silent too long, or
   /// could not do it: what it said last stands in the message.
   Message ask(Message& question, const Progress& progress);
 
@@ -29,7 +29,7 @@ class YadeProcess {
   void rollback();
 
  private:
-  Message wait(const std::string& what, const Progress& progress);
+  Message wait(const std::string& what, Milliseconds silence, const Progress& progress);
   void await_hello();
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -41,6 +41,7 @@ class YadeProcess {
     PrivateFolder(const PrivateFolder&) = delete;
     PrivateFolder& operator=(const PrivateFolder&) = delete;
   };
+  Milliseconds silence_;
   PrivateFolder folder_;
   CoordinatorChannel channel_;
   std::optional<Process> process_;

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "proto/base/errors.hpp"
-
 namespace fluxpact {
 namespace {
 
@@ -19,22 +17,12 @@ Contact contact_of(const PairLaw& law, double effective_mass) {
           law[LawColumn::tangential_damping] * damping};
 }
 
-[[noreturn]] void refuse(const ContactLaws& laws, int free, int other, const char* key,
-                         const char* allowed) {
-  throw ConfigError(
-      "particles.contact.pairs: the {} of [{}, {}] beside that of [{}, {}]: particles.backend: "
-      "yade gives springs to bodies and puts those of two in series, so that {}; change one of "
-      "them, or use another engine",
-      key, laws.name(free), laws.name(other), laws.name(free), laws.name(free), allowed);
-}
-
 }  // namespace
 
-std::optional<double> in_series_with(double partner, double wanted) {
+double in_series_with(double partner, double wanted) {
   if (partner == 0) return wanted;
-  // A rounding error beyond is the same number.
-  if (!(wanted > 0) || wanted > partner * (1 + 1e-12)) return std::nullopt;
-  return wanted >= partner ? 0 : 1 / (1 / wanted - 1 / partner);
+  const double given = wanted > 0 ? wanted : 1e-9 * partner;
+  return given == partner ? 0 : 1 / (1 / given - 1 / partner);
 }
 
 YadeMaterials yade_materials(const ContactLaws& laws, const YadeSpheres& spheres) {
@@ -61,17 +49,8 @@ YadeMaterials yade_materials(const ContactLaws& laws, const YadeSpheres& spheres
     const int other = kind - 1;
     const PairLaw& law = laws[laws.index(free, other)].given ? laws[laws.index(free, other)] : own;
     const Contact contact = contact_of(law, mass);
-    const auto kn = in_series_with(2 * among.kn, contact.kn);
-    const auto ks = in_series_with(2 * among.ks, contact.ks);
-    const auto cn = in_series_with(2 * among.cn, contact.cn);
-    const auto cs = in_series_with(2 * among.cs, contact.cs);
-    if (!kn) refuse(laws, free, other, "normal_stiffness", "it is at most twice that");
-    if (!ks) refuse(laws, free, other, "tangential_stiffness", "it is at most twice that");
-    if (!cn || !cs) {
-      refuse(laws, free, other, "restitution",
-             "the dashpot |ln e| sqrt(m* k / (pi^2 + ln^2 e)) is at most twice that, and not 0");
-    }
-    add(*kn, *ks, *cn, *cs);
+    add(in_series_with(2 * among.kn, contact.kn), in_series_with(2 * among.ks, contact.ks),
+        in_series_with(2 * among.cn, contact.cn), in_series_with(2 * among.cs, contact.cs));
     set_friction(kind, law[LawColumn::friction]);
   }
   return materials;

@@ -2,8 +2,6 @@
 // and puts those of two that touch in series.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "dem_server/backends/native/contact_law.hpp"
@@ -22,22 +20,23 @@ struct YadeSpheres {
 /// A column for each number of Law2_ScGeom_ViscElPhys_Basic, a row for each kind of body: the free
 /// particles, then one for the fixed particles of each material of the scene, then the walls.
 struct YadeMaterials {
-  std::vector<double> kn;              ///< [N/m]; 0: infinitely stiff
-  std::vector<double> ks;              ///< [N/m]; 0: infinitely stiff
+  std::vector<double> kn;              ///< [N/m]; of the body, 0: rigid
+  std::vector<double> ks;              ///< [N/m]; of the body, 0: rigid
   std::vector<double> cn;              ///< [kg/s]
   std::vector<double> cs;              ///< [kg/s]
   std::vector<double> friction_angle;  ///< [rad] of each two kinds
 };
 
-/// What a body must have so that in series with `partner` it gives `wanted`; 0 stands for an
-/// infinite one (YADE leaves it out of the series). None if there is no such number.
-std::optional<double> in_series_with(double partner, double wanted);
+/// What a body must have so that in series with `partner` it gives `wanted`: 1/wanted - 1/partner,
+/// inverted. That is negative for a contact stiffer than the partner alone would be, which YADE
+/// takes: only the series counts. A partner of 0 is left out of the series by YADE, and so is the
+/// answer 0, for `wanted` = `partner`. Nothing in series gives 0: a billionth of the partner
+/// stands for it.
+double in_series_with(double partner, double wanted);
 
-/// Materials with which every contact of a free sphere has exactly the stiffness and the dashpot of
-/// the linear law: of two spheres, m* = m/2; of one and a fixed one or a wall, m* = m. Kinds that
-/// the scene gives no pair for get those of the free particles. Throws ConfigError that names the
-/// pair which cannot be had: a wall or a fixed particle as a body of its own can only soften a
-/// contact.
+/// Materials with which every contact of a free sphere has exactly the stiffness, the dashpot and
+/// the friction of the linear law: of two spheres, m* = m/2; of one and a fixed one or a wall,
+/// m* = m. Kinds that the scene gives no pair for get those of the free particles.
 YadeMaterials yade_materials(const ContactLaws& laws, const YadeSpheres& spheres);
 
 /// Row of YadeMaterials.

@@ -132,21 +132,26 @@ std::string percent(const std::array<double, 4>& errors) {
 }
 
 TEST(FallingSphere, one_way_follows_the_reference_to_first_order_in_the_window) {
-  // In the first window no drag acts yet; then it is that of Euler's implicit rule with the
-  // coefficient of the last slip. Both are errors of first order; what is left of them at 0.35 s
-  // has decayed by exp(−0.35 s/40 ms), 40 ms = τ/(1 + 0.253 Re^0.687).
+  // Drag is that of Euler's implicit rule with the coefficient of the last slip: an error of first
+  // order, of which at 0.35 s is left what has decayed by exp(−0.35 s/40 ms), 40 ms =
+  // τ/(1 + 0.253 Re^0.687). Without drag in the first window it was 5.8 % at 0.05 s.
   fmt::print("DEM06, one-way: error of the velocity at 0.05, 0.10, 0.20, 0.35 s\n");
   for (const auto& [name, map] : all_maps(5e-3)) {
     const std::array<double, 4> coarse = errors({}, map, false);
     Rise rise;
     rise.window = 5e-4;
     const std::array<double, 4> fine = errors(rise, map, false);
+    EXPECT_LE(std::abs(coarse[0]), 4e-3) << name;
+    EXPECT_LE(std::abs(coarse[1]), 2e-3) << name;
     fmt::print("{:>10}, 1 ms:   {}\n{:>10}, 0.5 ms: {}\n", name, percent(coarse), name,
                percent(fine));
-    EXPECT_LE(std::abs(coarse[3]), 1.5e-5) << name;
+    EXPECT_LE(std::abs(coarse[3]), 1.3e-5) << name;
     EXPECT_LE(std::abs(fine[3]), 1e-5) << name;
-    for (std::size_t k = 0; k < fine.size(); ++k) {  // 2 for windows that go to 0
-      EXPECT_NEAR(coarse[k] / fine[k], 2, 0.25) << name << ' ' << published_times[k] << " s";
+    // 2 for windows that go to 0; at first an error of second order is as large: that gravity acts
+    // in the first window as if there were no drag.
+    for (std::size_t k = 0; k < fine.size(); ++k) {
+      EXPECT_NEAR(coarse[k] / fine[k], 2, k < 2 ? 0.6 : 0.25)
+          << name << ' ' << published_times[k] << " s";
     }
   }
 }
@@ -167,25 +172,50 @@ TEST(FallingSphere, two_way_is_within_half_a_per_cent_with_maps_50_diameters_wid
   }
 }
 
+/// A sphere in the middle of a channel of 9 x 18 x 9 cells.
+struct Held {
+  double cell = diameter;     // m
+  double reynolds = 4.035;    // ρ u d/μ: that of the falling sphere, were its drag Stokes'
+  Vector3 away{0, 0, 0};      // from the centre of the middle cell, in cells
+  double windows_a_cell = 2;  // in the stream
+};
+
 /// The share of the slip that a sphere held in a uniform stream does not see, with steady fluid.
-double unseen_slip(const VoidageSettings& map, double cell) {
-  const double slip = gravity * diameter * diameter * (density - gas_density) / (18 * viscosity);
+double unseen_slip(const VoidageSettings& map, const Held& held) {
+  const double cell = held.cell;
+  const double slip = held.reynolds * viscosity / (gas_density * diameter);
   Rise rise;
   rise.drag = DragLaw::stokes;
   rise.cells = {9, 18, 9};
   rise.size = cell * Vector3(9, 18, 9);
   rise.inflow = slip;
-  rise.window = 0.5 * cell / slip;
+  rise.window = cell / (held.windows_a_cell * slip);
   Scene scene = scene_of(rise, map);
   scene.scene.gravity = Vector3::Zero();
   scene.particles.backend = ParticleBackend::kinematic;
   scene.particles.materials["glass"].density = density;
-  const ParticleState sphere = single_sphere(0.5 * rise.size, Vector3::Zero(), diameter, density);
+  const ParticleState sphere = single_sphere(cell * (Vector3(4.5, 9.5, 4.5) + held.away),
+                                             Vector3::Zero(), diameter, density);
   Coupled coupled(
       scene, [&](const Scene& s, const Mesh& m) { return make_kinematic_engine(s, m, sphere); });
-  for (int step = 0; step < 80; ++step) coupled.advance();
+  for (int step = 0; step < 40 * held.windows_a_cell; ++step) coupled.advance();
   const double stokes = 3 * std::numbers::pi * viscosity * diameter;
   return 1 - coupled.impulse_given().y() / (rise.window * stokes * slip);
+}
+
+TEST(SelfDisturbance, of_a_narrow_map_depends_on_the_place_in_the_cell_and_not_on_the_window) {
+  // That is why no correction is built in: it would have to know it to a per cent.
+  const VoidageSettings exact(VoidageMap::exact);
+  const Held centre{.cell = 5 * diameter, .reynolds = 1};
+  Held corner = centre;
+  corner.away = Vector3::Constant(0.49);
+  Held longer = centre;
+  longer.windows_a_cell = 0.5;
+  const double unseen = unseen_slip(exact, centre);
+  fmt::print("exact, cells of 5 d, Re 1: {:.4f} at the centre, {:.4f} in a corner\n", unseen,
+             unseen_slip(exact, corner));
+  EXPECT_GT(unseen, 3 * unseen_slip(exact, corner));
+  EXPECT_NEAR(unseen_slip(exact, longer) / unseen, 1, 1e-3);  // steady to a thousandth
 }
 
 TEST(SelfDisturbance, by_map_and_size_of_the_cells) {
@@ -200,7 +230,10 @@ TEST(SelfDisturbance, by_map_and_size_of_the_cells) {
       for (const double diameters : {1.0, 2.0, 5.0, 10.0}) {
         VoidageSettings settings = map;
         settings.width = cells_wide * diameters * diameter;
-        const double unseen = unseen_slip(settings, diameters * diameter);
+        Held held;
+        held.cell = diameters * diameter;
+        held.away.y() = -0.5;  // between two cells along the stream
+        const double unseen = unseen_slip(settings, held);
         fmt::print("  {:.0f} d: {:.2e}", diameters, unseen);
         EXPECT_GT(unseen, 0) << name;  // the fluid gives way
         if (cells_wide > 2 && diameters >= 5) {

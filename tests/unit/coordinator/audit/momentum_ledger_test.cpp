@@ -173,7 +173,23 @@ TEST(MomentumLedger, sees_a_pressure_force_that_was_not_given) {
 TEST(MomentumLedger, takes_any_impulse_from_nowhere_as_an_error_without_bound) {
   Sample sample(1);
   sample.given[0] = {1e-30, 0, 0};
-  EXPECT_EQ(sample.audit({}).handover_error, std::numeric_limits<double>::infinity());
+  MomentumTotal nothing;
+  nothing.begun = true;
+  EXPECT_EQ(sample.audit(nothing).handover_error, std::numeric_limits<double>::infinity());
+}
+
+TEST(MomentumLedger, takes_the_first_impulse_as_lent_until_the_second_window) {
+  Exchange exchange;
+  const Vector3 lent(1e-3, -2e-3, 5e-4);
+  exchange.first.given[4] = lent;
+  const MomentumAudit start = exchange.first.audit({});
+  EXPECT_EQ(start.handover_error, 0);
+  EXPECT_LE((start.ledger - exchange.first.handed_over(true) + lent).norm(),
+            round_off * start.total.scale);
+  // The rest of what the fluid handed over in the first window is due, no more.
+  EXPECT_GT(exchange.audit().handover_error, 0.1 * lent.norm() / start.total.scale);
+  exchange.second.given[11] -= lent;
+  EXPECT_LE(exchange.audit().handover_error, round_off);
 }
 
 TEST(MomentumLedger, finds_nothing_where_nothing_is_exchanged) {

@@ -185,20 +185,24 @@ TEST(Image, is_met_through_a_periodic_side) {
   Scene scene = box_scene({0.1, 0.1, 0.1}, {Axis::x, Axis::y});
   add_collisions(scene, 1.0, 0.0);
   const double radius = 4e-3;
-  ParticleState state;
-  // Through a corner, both near the sides; the line of centres is along (1, 1, 0).
-  add_sphere(state, {0.093, 0.093, 0.05}, {0.1, 0.1, 0}, radius);
-  add_sphere(state, {0.003, 0.003, 0.05}, {-0.1, -0.1, 0}, radius);
-  const auto engine = make_hard(scene, state);
-  const double gap = 0.01 * std::sqrt(2) - 2 * radius;
-  const double meet = gap / (0.2 * std::sqrt(2));
-  run(*engine, 0.1, 1e-4);
-  ASSERT_EQ(engine->counters().collisions, 1);
-  const ParticleState& after = engine->particles();
-  EXPECT_NEAR(after.velocity[0].x(), -0.1, 20 * eps);
-  const double x = 0.093 + 0.1 * meet - 0.1 * (0.1 - meet);
-  EXPECT_NEAR(after.position[0].x(), x, 20 * eps);
-  EXPECT_NEAR(after.position[1].y(), 0.003 - 0.1 * meet + 0.1 * (0.1 - meet), 20 * eps);
+  // Through a corner, both near the sides; the line of centres is along (1, 1, 0). In the others
+  // one of them gets to the other side first.
+  for (const double moved : {0.0, -0.002, 0.006}) {
+    ParticleState state;
+    add_sphere(state, {0.093 + moved, 0.093 + moved, 0.05}, {0.1, 0.1, 0}, radius);
+    add_sphere(state, {0.003 + moved, 0.003 + moved, 0.05}, {-0.1, -0.1, 0}, radius);
+    const auto engine = make_hard(scene, state);
+    const double gap = 0.01 * std::sqrt(2) - 2 * radius;
+    const double meet = gap / (0.2 * std::sqrt(2));
+    run(*engine, 0.1, 1e-4);
+    ASSERT_EQ(engine->counters().collisions, 1) << moved;
+    const ParticleState& after = engine->particles();
+    EXPECT_NEAR(after.velocity[0].x(), -0.1, 20 * eps) << moved;
+    const double x = 0.093 + moved + 0.1 * meet - 0.1 * (0.1 - meet);
+    EXPECT_NEAR(after.position[0].x(), x, 20 * eps) << moved;
+    EXPECT_NEAR(after.position[1].y(), 0.003 + moved - 0.1 * meet + 0.1 * (0.1 - meet), 20 * eps)
+        << moved;
+  }
 }
 
 TEST(Image, flies_on_through_many_periods_in_one_window) {

@@ -63,7 +63,6 @@ TEST(Gas, of_smooth_elastic_spheres_keeps_its_energy_and_momentum) {
   EXPECT_LT((after.momentum - before.momentum).norm(),
             roundings * mass_of(start, 0) * std::sqrt(400.0));
   EXPECT_LT(worst_overlap(scene, engine->particles()), 1e-12);
-  // In which what each collision does to the energy of its two is hidden: see Collision.
 }
 
 TEST(Gas, of_perfectly_rough_spheres_keeps_the_energy_of_speed_and_spin) {

@@ -158,7 +158,8 @@ TEST(HardSphereRows, that_overlap_are_refused_by_name) {
   state.position[1] = {0.03, 0.01, 0.01};
   EXPECT_THROW(make_hard(scene, state), NumericsError);  // outside
   state.position[1] = {0.015, 0.01, 0.85e-3};
-  expect_contains(message(), "particle 2 at (0.015, 0.01, 0.00085) m overlaps the wall z_min by 0.15");
+  expect_contains(message(),
+                  "particle 2 at (0.015, 0.01, 0.00085) m overlaps the wall z_min by 0.15");
 }
 
 TEST(HardSphereRows, without_room_collide_without_end_and_are_refused_by_name) {

@@ -157,8 +157,12 @@ TEST_F(Exchange, deposits_every_impulse_once) {
 
 TEST_F(Exchange, makes_the_force_of_drag_pressure_and_buoyancy) {
   make_offer(0.01);
+  offer.initial = false;
   // A window of another length: the impulse of drag stays that of the fluid's own step.
   window_forces(settings, offer, fluid(), particles, bulk, 2, 0.04, forces);
+  offer.initial = true;
+  WindowForces first;
+  window_forces(settings, offer, fluid(), particles, bulk, 1, 0.01, first);
   for (int i = 0; i < particles.size(); ++i) {
     const Vector3 zero = Vector3::Zero();
     const Vector3 u = offer.weights.gather(i, std::span<const Vector3>(velocity), zero);
@@ -170,6 +174,8 @@ TEST_F(Exchange, makes_the_force_of_drag_pressure_and_buoyancy) {
     EXPECT_LE((forces.drag_impulse[i] - drag).norm(), 1e-15 * drag.norm());
     EXPECT_LE((forces.force[i] - drag / 0.04 - pressure - buoyancy).norm(), 1e-14 * scale);
     EXPECT_LE((forces.impulse[i] - drag - 0.04 * pressure).norm(), 1e-14 * scale);
+    EXPECT_EQ(first.impulse[i], first.drag_impulse[i]);  // no pressure is known yet
+    EXPECT_GT(pressure.norm(), 0);
   }
 }
 

@@ -77,6 +77,30 @@ inline ParticleState cloud() {
   return particles;
 }
 
+inline Vector3 sum(std::span<const Vector3> values) {
+  Vector3 total = Vector3::Zero();
+  for (const Vector3& value : values) total += value;
+  return total;
+}
+
+/// Of the committed particles.
+struct Velocities {
+  std::vector<Vector3> value;          ///< [m/s], by rows
+  Vector3 momentum = Vector3::Zero();  ///< of all [kg m/s]
+};
+
+inline Velocities velocities(ParticleParticipant& side) {
+  Fields state;
+  side.snapshot(state);
+  const int count = static_cast<int>(state.views().front().values.size());
+  const auto v = state.vectors("velocity", count);
+  const auto radius = state.scalars("radius", count);
+  const auto density = state.scalars("density", count);
+  Velocities all{{v.begin(), v.end()}};
+  for (int i = 0; i < count; ++i) all.momentum += density[i] * ball_volume(radius[i]) * v[i];
+  return all;
+}
+
 /// The fields and numbers of a message but the time it took, to compare with another.
 inline std::map<std::string, std::vector<double>> copy(const Fields& fields) {
   std::map<std::string, std::vector<double>> all;

@@ -120,6 +120,19 @@ TEST(YadeEngine, that_is_killed_is_a_named_error) {
   expect_contains(text, "signal 9");
 }
 
+TEST(YadeEngine, that_is_silent_is_a_named_error) {
+  ParticleState state;
+  add_sphere(state, {0.01, 0.01, 0.01}, {0, 0, 0}, r);
+  Scene scene = glass_in_a_box();
+  scene.launch.deadline = 4;
+  const auto engine = make_yade(scene, state);
+  kill(yade_child(), SIGSTOP);
+  const std::vector<Vector3> none(1, Vector3::Zero());
+  const std::string text = message_of<ProtocolError>([&] { engine->advance(1e-3, 100, none, {}); });
+  expect_contains(text, "YADE");
+  expect_contains(text, "silent for 3 s");
+}
+
 TEST(YadeEngine, refuses_what_it_cannot_do_before_it_starts) {
   ParticleState two;
   add_sphere(two, {0.005, 0.005, 0.005}, {0, 0, 0}, r);

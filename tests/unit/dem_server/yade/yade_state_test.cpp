@@ -25,16 +25,17 @@ void expect_same_bits(const ParticleState& a, const ParticleState& b) {
   EXPECT_TRUE(same(a.spin, b.spin));
 }
 
-/// Spheres that fall on each other: many contacts come and go in every window.
+/// Spheres that fall on each other, ten times as fast as on earth so that a few windows make a heap
+/// of them.
 struct Heap {
   Scene scene = box_scene({0.01, 0.01, 0.03});
   ParticleState state;
   std::vector<Vector3> push;
 
   Heap() {
-    scene.scene.gravity = {0, 0, -9.81};
+    scene.scene.gravity = {0, 0, -98.1};
     scene.particles.time_step = 5e-6;
-    add_laws(scene, 1000, 0.9, 0.3);
+    add_laws(scene, 1000, 0.3, 0.3);
     for (int i = 0; i < count; ++i) {
       add_sphere(state,
                  {1.2e-3 + 2.4e-3 * (i % 4) + 1e-5 * (i % 7), 1.2e-3 + 2.4e-3 * (i / 4 % 4),
@@ -76,10 +77,10 @@ TEST(YadeState, rollback_presents_the_committed_state_and_repeats_the_bits) {
 TEST(YadeState, goes_on_with_the_same_bits_in_another_process) {
   const Heap heap;
   const auto engine = make_yade(heap.scene, heap.state);
-  heap.windows(*engine, 5);
+  heap.windows(*engine, 8);
   EngineState state;
   engine->store(state);
-  EXPECT_GE(state.fields().number("contacts"), 5);
+  EXPECT_GE(state.fields().number("contacts"), 30);  // several of one sphere: sums have an order
   const auto other = make_yade(heap.scene, heap.state);
   heap.window(*other);  // a candidate that is forgotten
   other->restore(state.fields());

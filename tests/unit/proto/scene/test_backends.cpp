@@ -20,14 +20,6 @@ TEST(Backends, what_an_engine_cannot_do_is_refused_with_its_name) {
   expect_error(with_backend("native\n  ranks: 2"), "s.yaml:", {"particles.ranks", "native", "MPI"});
 }
 
-TEST(Backends, particles_come_and_go_on_one_rank_only) {
-  EXPECT_EQ(read_scene(with_backend("lammps\n  outflow: []\n  ranks: 2"), "s.yaml").particles.ranks,
-            2);
-  expect_error(with_backend("lammps\n  ranks: 2"),
-               "s.yaml:", {"particles.outflow", "on several ranks"});
-  EXPECT_EQ(read_scene(with_backend("lammps"), "s.yaml").particles.ranks, 1);
-}
-
 TEST(Backends, hard_spheres_need_springs_only_to_settle_and_a_time_of_contact) {
   constexpr const char* pair = "[glass, glass], normal_stiffness: 1000,";
   const auto without_spring = [&](const std::string& text) {
@@ -47,6 +39,14 @@ TEST(Backends, hard_spheres_need_springs_only_to_settle_and_a_time_of_contact) {
   // Springs have their tangential stiffness.
   expect_error(with(pair, std::string(pair) + " tangential_restitution: 0.4,"),
                "s.yaml:", {"pairs[0].tangential_restitution", "only with particles.backend"});
+}
+
+TEST(Backends, particles_come_and_go_on_one_rank_only) {
+  EXPECT_EQ(read_scene(with_backend("lammps\n  outflow: []\n  ranks: 2"), "s.yaml").particles.ranks,
+            2);
+  expect_error(with_backend("lammps\n  ranks: 2"),
+               "s.yaml:", {"particles.outflow", "on several ranks"});
+  EXPECT_EQ(read_scene(with_backend("lammps"), "s.yaml").particles.ranks, 1);
 }
 
 TEST(Backends, a_program_is_named_by_custom_engines_and_only_by_them) {

@@ -1,0 +1,187 @@
+// The pairs of a list that touch or may do so within the next sub-steps, with their springs in
+// place.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dem_server/backends/native/springs.hpp"
+
+namespace fluxpact {
+
+/// A pair of neighbours, held by one of the two.
+struct Pair {
+  std::int32_t other = 0;   ///< the partner's place; in its block for an inner pair
+  std::uint16_t mine = 0;   ///< place of the holder in its block
+  std::uint8_t shift = 13;  ///< periods to add to the partner's position (Shift)
+  std::uint8_t law = 0;     ///< row of the table of laws
+};
+
+/// Those of one list that were `close` when it was last gone through, in its order and in batches
+/// of eight as the vector registers want them. All others are apart for sure for some sub-steps
+/// (CloseBudget), which need not look at them; a close pair that does not touch has no force and no
+/// springs.
+template <class Real>
+class ClosePairs {
+ public:
+  static constexpr int batch_size = 8;
+  struct alignas(16) Batch {
+    std::int32_t other[batch_size];
+    std::uint16_t mine[batch_size];
+  };
+
+  int count() const { return count_; }
+  /// Lanes beyond `count` repeat the last pair.
+  const Batch& batch(int b) const { return batches_[b]; }
+  /// The places of a batch in the list.
+  const std::int32_t* places(int b) const {
+    return places_.data() + std::ptrdiff_t{b} * batch_size;
+  }
+  /// The springs of a batch, number by number (SpringNumbers), eight of each.
+  Real* springs(int b) { return springs_.data() + std::ptrdiff_t{b} * batch_size * each_.count; }
+
+  /// The springs of all pairs of the list that have some.
+  void take_springs(PairSprings<Real>& to) const {
+    int some = 0;
+    for (int n = 0; n < count_; ++n) some += has_springs(n) ? 1 : 0;
+    to.reset(pairs_, each_, some);
+    for (int n = 0; n < count_; ++n) {
+      if (has_springs(n)) to.append(places_[n], springs_of(n), batch_size, false);
+    }
+  }
+  /// The pairs at `places` (ascending) of the list, with the springs that they have in `before`,
+  /// which is of the same list.
+  void renew(std::span<const Pair> list, std::span<const std::int32_t> places,
+             const ClosePairs& before) {
+    each_ = before.each_;
+    assign(list, places);
+    int old = 0;
+    for (int n = 0; n < count_ && each_.count > 0; ++n) {
+      while (old < before.count_ && before.places_[old] < places_[n]) ++old;
+      if (old == before.count_) break;
+      if (before.places_[old] == places_[n]) put(n, before.springs_of(old), batch_size);
+    }
+  }
+  /// A copy in the room that is there.
+  void copy(const ClosePairs& other) {
+    count_ = other.count_;
+    pairs_ = other.pairs_;
+    each_ = other.each_;
+    resize(other.batches_.size(), batches_);
+    resize(other.places_.size(), places_);
+    resize(other.springs_.size(), springs_);
+    std::copy(other.batches_.begin(), other.batches_.end(), batches_.begin());
+    std::copy(other.places_.begin(), other.places_.end(), places_.begin());
+    std::copy(other.springs_.begin(), other.springs_.end(), springs_.begin());
+  }
+  /// Springs kept earlier: only the pairs that have some are here then, until the list is gone
+  /// through. `places`: room.
+  void bring_back(std::span<const Pair> list, const PairSprings<Real>& from,
+                  std::vector<std::int32_t>& places) {
+    places.clear();
+    from.visit([&](int place, const Real*) { places.push_back(place); });
+    each_ = from.each();
+    assign(list, places);
+    int n = 0;
+    from.visit([&](int, const Real* numbers) { put(n++, numbers, 1); });
+  }
+
+ private:
+  /// Pairs without springs.
+  void assign(std::span<const Pair> list, std::span<const std::int32_t> places) {
+    count_ = static_cast<int>(places.size());
+    pairs_ = static_cast<int>(list.size());
+    const std::size_t batches = (places.size() + batch_size - 1) / batch_size;
+    resize(batches, batches_);
+    resize(batches * batch_size, places_);
+    resize(batches * batch_size * static_cast<std::size_t>(each_.count), springs_);
+    std::fill(springs_.begin(), springs_.end(), Real{0});
+    for (int n = 0; n < static_cast<int>(batches) * batch_size; ++n) {
+      const std::int32_t place = places[std::min(n, count_ - 1)];
+      places_[n] = place;
+      Batch& batch = batches_[n / batch_size];
+      batch.mine[n % batch_size] = list[place].mine;
+      batch.other[n % batch_size] = list[place].other;
+    }
+  }
+  void put(int n, const Real* numbers, int stride) {
+    Real* const to = springs_of(n);
+    for (int k = 0; k < each_.count; ++k) {
+      to[std::ptrdiff_t{k} * batch_size] = numbers[std::ptrdiff_t{k} * stride];
+    }
+  }
+  Real* springs_of(int n) { return springs(n / batch_size) + n % batch_size; }
+  const Real* springs_of(int n) const {
+    return springs_.data() + std::ptrdiff_t{n / batch_size} * batch_size * each_.count +
+           n % batch_size;
+  }
+  bool has_springs(int n) const {
+    const Real* const numbers = springs_of(n);
+    for (int k = 0; k < each_.count; ++k) {
+      if (numbers[std::ptrdiff_t{k} * batch_size] != 0) return true;
+    }
+    return false;
+  }
+  template <class Values>
+  static void resize(std::size_t size, Values& values) {
+    if (size > values.capacity()) {
+      Values().swap(values);  // first away with the old one: both at once would be the peak
+      values.reserve(with_room(size));
+    }
+    values.resize(size);
+  }
+
+  HugeVector<Batch> batches_;
+  HugeVector<Real> springs_;
+  std::vector<std::int32_t> places_;
+  SpringNumbers each_;
+  int count_ = 0;
+  int pairs_ = 0;  // of the list
+};
+
+/// For how long the close pairs of a block will do. Those that are not close would be apart after
+/// `flight` if all went on as they were going, with `room` to spare between the surfaces; and kicks
+/// can take particles from such a flight by so much only.
+struct CloseBudget {
+  double flight = -1;  ///< [s] of what is left of it; below 0: the list must be gone through
+  double room = 0;     ///< [m]
+  double speed = 0;    ///< [m/s] by which partners may differ from that flight
+  double way = 0;      ///< [m] the same
+
+  /// In a new list, and wherever particles were put elsewhere.
+  void forget() { flight = -1; }
+  /// After a kick of both partners together of at most `kick` [m/s], and a drift. False if the list
+  /// must be gone through.
+  bool spend(double kick, double time_step) {
+    speed += kick;
+    way += speed * time_step;
+    flight -= time_step;
+    // (The millionth of the room is for the rounding of time and positions.)
+    return flight > -1e-9 * time_step && way < (1 - 1e-6) * room;
+  }
+  /// For as many sub-steps with kicks like the last as `usual_room` [m] lasts, if that is neither
+  /// too often nor further than the eye can see.
+  void renew(double kick, double time_step, double usual_room) {
+    constexpr double fewest = 6;
+    constexpr double most = 32;
+    const double fall = kick * time_step;  // after n sub-steps n (n + 1)/2 of it
+    const double steps = std::floor(std::sqrt(2 * usual_room / std::max(fall, 1e-300)));
+    const double n = std::clamp(steps, fewest, most);
+    flight = n * time_step;
+    room = std::max(usual_room, 1.2 * fall * n * (n + 1) / 2);
+    speed = 0;
+    way = 0;
+  }
+};
+
+/// What going through a list needs; kept, so that it needs no memory of its own each time.
+template <class Real>
+struct CloseSearch {
+  ClosePairs<Real> renewed;
+  std::vector<std::int32_t> places;
+};
+
+}  // namespace fluxpact

@@ -227,6 +227,7 @@ void ParticleParticipant::publish_state(std::span<Vector3> impulse_given, Fields
   std::array<double, 3> totals{total(bulk_.volume), total(bulk_.mass),
                                static_cast<double>(offer_maker_.survey().outside)};
   engine_->add_up(totals);
+  beyond_drag_ = totals[2];
   engine_->add_up(numbers_in(impulse_given));
   out.add(field::voidage, voidage_);
   out.add(field::impulse_given, std::span<const Vector3>(impulse_given));
@@ -236,7 +237,7 @@ void ParticleParticipant::publish_state(std::span<Vector3> impulse_given, Fields
   out.add_number(field::particle_mass, totals[1]);
   out.add_number(field::excess_moved, excess_moved_);
   if (drag_range(settings_.drag.law).most_reynolds < INFINITY) {
-    out.add_number(field::particles_beyond_drag, totals[2]);
+    out.add_number(field::particles_beyond_drag, beyond_drag_);
   }
   if (!flow_) return;
   flow_sent_ = flow_->window();
@@ -262,8 +263,8 @@ void ParticleParticipant::commit() {
 
 void ParticleParticipant::warn_of_drag() {
   constexpr double tolerated = 0.01;  // a few spheres at the edge of a range are no news
-  const int count = engine_->particles().size();
-  const double share = static_cast<double>(offer_maker_.survey().outside) / std::max(count, 1);
+  const int count = engine_->all_particles().size();
+  const double share = beyond_drag_ / std::max(count, 1);
   if (said_drag_ || share <= tolerated) return;
   said_drag_ = true;
   const DragRange range = drag_range(settings_.drag.law);

@@ -95,6 +95,7 @@ class ParticleParticipant : public Participant {
   Offer committed_;
   Offer candidate_;
   bool pending_ = false;    ///< a candidate waits for commit or rollback
+  double beyond_drag_ = 0;  ///< particles out of the range of the drag law
   bool said_drag_ = false;  ///< that many particles are beyond the range of the drag law
 
   // Of the newest advance. Nothing here is read by the next one.

@@ -92,7 +92,7 @@ void check_backend(const Scene& scene, Findings& findings) {
             "the particles have different diameters");
   refuse.of("particles.insertion", spread_sizes(particles), can.spread_sizes,
             "a continuous distribution makes every diameter another one");
-  const bool alone = particles.ranks == 1;
+  const bool alone = particles.ranks == 1 || !can.ranks;
   const std::string on_ranks = alone ? "" : " on several ranks";
   refuse.of("particles.inflow", !particles.inflow.empty(), can.flow && alone,
             "particles come in" + on_ranks);

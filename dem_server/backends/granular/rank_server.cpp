@@ -171,7 +171,7 @@ void follow(const Ranks& ranks, Participant& own) {
 
 int serve_as_follower(const Ranks& ranks, const EngineMaker& engine) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // with mpirun, however that ends
-  log_to_stderr(fmt::format("dem_server, rank {}", ranks.rank()), "warning");
+  log_to_stderr(fmt::format("dem_server, rank {}", ranks.rank()), "error");
   const std::string where = fmt::format("rank {}: ", ranks.rank());
   try {
     const auto own = make_particle_participant(std::string(name_of(engine.backend)), {engine});

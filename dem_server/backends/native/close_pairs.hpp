@@ -163,7 +163,7 @@ struct CloseBudget {
     return flight > -1e-9 * time_step && way < (1 - 1e-6) * room;
   }
   /// For as many sub-steps with kicks like the last as `usual_room` [m] lasts, if that is neither
-  /// too often nor further than the eye can see.
+  /// too often nor so long that kicks will have changed.
   void renew(double kick, double time_step, double usual_room) {
     constexpr double fewest = 6;
     constexpr double most = 32;

@@ -39,7 +39,7 @@ template <class T>
 HWY_INLINE Row<T> load_row(const T* row) {
   return hn::Load(hn::FixedTag<T, 4>(), row);
 }
-/// Three of four numbers, and 0. (A masked load would do, but takes 5 ns.)
+/// Three of four numbers, and 0. (A masked load would do, but takes 4 ns.)
 template <class T>
 HWY_INLINE Row<T> load_vector(const T* numbers) {
   const hn::FixedTag<T, 4> d;

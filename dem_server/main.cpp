@@ -1,4 +1,5 @@
 // The particle server: the engines that it has, and where the others are.
+#include "dem_server/backends/domain.hpp"
 #include "dem_server/backends/hard_sphere/hard_sphere_engine.hpp"
 #include "dem_server/backends/kinematic/kinematic_engine.hpp"
 #include "dem_server/backends/native/native_engine.hpp"
@@ -11,12 +12,10 @@ int main(int argc, char** argv) {
   using fluxpact::ParticleBackend;
   std::vector<fluxpact::EngineMaker> engines{
       {ParticleBackend::native, {}, fluxpact::make_native_engine},
-      {ParticleBackend::hard_sphere, fluxpact::check_hard_sphere_mesh,
-       fluxpact::make_hard_sphere_engine},
-      {ParticleBackend::kinematic, fluxpact::check_kinematic_mesh,
-       fluxpact::make_kinematic_engine}};
+      {ParticleBackend::hard_sphere, fluxpact::check_box_mesh, fluxpact::make_hard_sphere_engine},
+      {ParticleBackend::kinematic, fluxpact::check_box_mesh, fluxpact::make_kinematic_engine}};
 #ifdef FLUXPACT_WITH_YADE
-  engines.push_back({ParticleBackend::yade, {}, fluxpact::make_yade_engine});
+  engines.push_back({ParticleBackend::yade, fluxpact::check_box_mesh, fluxpact::make_yade_engine});
 #endif
   return fluxpact::particle_server_main(
       argc, argv, "dem_server", std::move(engines),

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proto/base/errors.hpp"
+#include "proto/scene/names.hpp"
+
 namespace fluxpact {
 namespace {
 
@@ -44,6 +47,18 @@ std::vector<int> faces_off_the_box(const Scene& scene, const Mesh& mesh, const D
     }
   }
   return faces;
+}
+
+void check_box_mesh(const Scene& scene, const Mesh& mesh) {
+  if (!has_particles(scene)) return;
+  const std::vector<int> faces = faces_off_the_box(scene, mesh, particle_domain(scene, mesh));
+  if (faces.empty()) return;
+  const Vector3& at = mesh.face_centres[faces.front()];
+  throw ConfigError(
+      "particles.backend: {} knows the sides of a box only, and a face at ({:.6g}, {:.6g}, {:.6g}) "
+      "m "
+      "is off the outer box of the mesh; use a box mesh, or the native backend",
+      name_of(scene.particles.backend), at.x(), at.y(), at.z());
 }
 
 const char* side_name(int side) {

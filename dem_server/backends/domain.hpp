@@ -48,6 +48,10 @@ int side_of_face(const Domain& domain, const Mesh& mesh, int face);
 /// `pressure` boundary.
 std::vector<int> faces_off_the_box(const Scene& scene, const Mesh& mesh, const Domain& domain);
 
+/// Throws ConfigError that names the engine of the scene and the first such face, if the scene has
+/// particles: for engines that know the sides of a box only.
+void check_box_mesh(const Scene& scene, const Mesh& mesh);
+
 /// Position moved by whole periods into [lower, upper) along the periodic axes [m].
 Vector3 wrapped(const Domain& domain, Vector3 position);
 

@@ -328,17 +328,6 @@ void GranularEngine::restore(const Fields& fields) {
 
 }  // namespace
 
-void check_box(const Scene& scene, const Mesh& mesh, const std::string& engine) {
-  if (!has_particles(scene)) return;
-  const std::vector<int> faces = faces_off_the_box(scene, mesh, particle_domain(scene, mesh));
-  if (faces.empty()) return;
-  const Vector3& at = mesh.face_centres[faces.front()];
-  throw ConfigError(
-      "particles.backend: {} knows the sides of a box only, and a face at ({:.6g}, {:.6g}, {:.6g}) "
-      "m is off the outer box of the mesh; use a box mesh, or the native backend",
-      engine, at.x(), at.y(), at.z());
-}
-
 std::unique_ptr<ParticleEngine> make_granular_engine(const Scene& scene, const Mesh& mesh,
                                                      std::string name, ContactLaws laws,
                                                      ParticleState spheres,

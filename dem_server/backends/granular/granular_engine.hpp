@@ -14,10 +14,6 @@
 
 namespace fluxpact {
 
-/// Throws ConfigError for a mesh that is no box, if the scene has particles: the engine knows the
-/// sides of a box only.
-void check_box(const Scene& scene, const Mesh& mesh, const std::string& engine);
-
 /// `name` ("lammps", "liggghts"): in messages and in what `store` writes. The particles are sound
 /// (checked_rows) and the same on all ranks. Throws ConfigError for a sub-step that is too long, a
 /// pair of materials that can meet without a law, a period too short for the largest particle, ids

@@ -193,18 +193,6 @@ class HardSphereEngine final : public ParticleEngine {
 
 }  // namespace
 
-void check_hard_sphere_mesh(const Scene& scene, const Mesh& mesh) {
-  if (!has_particles(scene)) return;
-  const std::vector<int> faces = faces_off_the_box(scene, mesh, particle_domain(scene, mesh));
-  if (faces.empty()) return;
-  const Vector3& at = mesh.face_centres[faces.front()];
-  throw ConfigError(
-      "particles.backend: the hard_sphere engine knows the sides of a box only, and a face at "
-      "({:.6g}, {:.6g}, {:.6g}) m is off the outer box of the mesh; use a box mesh, or the native "
-      "backend",
-      at.x(), at.y(), at.z());
-}
-
 std::unique_ptr<ParticleEngine> make_hard_sphere_engine(const Scene& scene, const Mesh& mesh,
                                                         ParticleState initial) {
   return std::make_unique<HardSphereEngine>(scene, mesh, std::move(initial));

@@ -11,9 +11,6 @@
 
 namespace fluxpact {
 
-/// Throws ConfigError for a mesh that is no box, if the scene has particles.
-void check_hard_sphere_mesh(const Scene& scene, const Mesh& mesh);
-
 /// Runs in one thread. A window is taken as a whole under constant forces; its `sub_steps` give the
 /// time of a contact (hard_spheres.hpp) alone. Positions and times are exact to round-off whatever
 /// they are.

@@ -9,10 +9,6 @@
 
 namespace fluxpact {
 
-/// Throws ConfigError for a mesh that is no box, if the scene has particles: nothing would keep
-/// them inside.
-void check_kinematic_mesh(const Scene& scene, const Mesh& mesh);
-
 /// Particles pass through each other and through walls' planes up to a radius; periodic sides wrap,
 /// and those that let particles out are flown through.
 /// Throws ConfigError for particles that are not sound (see checked_rows). Its `advance` throws

@@ -29,11 +29,12 @@ inline Scene scene_of(double stiffness, Precision precision) {
   return scene;
 }
 
-inline Impact hit_wall(double tangential, Precision precision = Precision::full) {
+inline Impact hit_wall(double tangential, Precision precision = Precision::full,
+                       double dt = time_step) {
   ParticleState state;
   add_sphere(state, {0.01, 0.01, r + 1e-9}, {tangential, 0, -approach}, r);
   const auto engine = make_engine(scene_of(1000, precision), state);
-  run(*engine, 1e-3, time_step);
+  run(*engine, 1e-3, dt);
   const ParticleState& after = engine->particles();
   return {1e3 * after.velocity[0].z(), 1e3 * after.velocity[0].x(), after.spin[0].y()};
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "bench.hpp"
+#include "dem_server/backends/domain.hpp"
 #include "dem_server/backends/kinematic/kinematic_engine.hpp"
 #include "dem_server/backends/native/native_engine.hpp"
 #include "dem_server/participant/particle_server.hpp"
@@ -14,7 +15,7 @@ using testing_bench::Bench;
 std::unique_ptr<Participant> particle_side(const std::string& backend) {
   return make_particle_participant(
       backend, {{ParticleBackend::native, {}, make_native_engine},
-                {ParticleBackend::kinematic, check_kinematic_mesh, make_kinematic_engine}});
+                {ParticleBackend::kinematic, check_box_mesh, make_kinematic_engine}});
 }
 
 TEST(MakeParticleParticipant, refuses_an_engine_that_the_scene_does_not_ask_for) {

@@ -2,6 +2,7 @@
 #include "dem_server/insertion/read_particles.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,11 +13,11 @@
 namespace fluxpact {
 namespace {
 
-/// A path that is free, and again after the test.
+/// A path that no other process has, and that is free again after the test.
 class TestFile {
  public:
   TestFile()
-      : path_(::testing::TempDir() + "fluxpact_readers_" +
+      : path_(::testing::TempDir() + "fluxpact_readers_" + std::to_string(getpid()) + "_" +
               ::testing::UnitTest::GetInstance()->current_test_info()->name()) {}
   explicit TestFile(const std::string& text) : TestFile() { std::ofstream(path_) << text; }
   ~TestFile() {

@@ -94,6 +94,39 @@ TEST(Bounce, of_a_ball_laid_down_at_rest_does_not_begin) {
   }
 }
 
+// Both know of the collision, by the same time but for its last bits: whoever comes first must have
+// the place of the other right.
+TEST(Bounce, of_two_of_which_one_crosses_a_periodic_side_first_has_the_right_normal) {
+  const double side = 0.02;
+  const double radius = 1e-3;
+  for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
+    Scene scene = box_scene(Vector3::Constant(side), {axis});
+    add_collisions(scene, 1.0, 0.0);
+    const Vector3 along = Vector3::Unit(static_cast<int>(axis));
+    const Vector3 across = Vector3::Unit((static_cast<int>(axis) + 1) % 3);
+    for (const double way : {1.0, -1.0}) {
+      for (int place = 0; place < 40; ++place) {
+        const double speed = 1 + 0.013 * place;
+        const Vector3 centre = Vector3::Constant(0.5 * side);
+        ParticleState state;
+        add_sphere(state, centre + way * (0.4 * side - 1e-5 * place) * along, Vector3::Zero(),
+                   radius);
+        add_sphere(state, centre - way * 0.47 * side * along + radius * across,
+                   -way * speed * along, radius);
+        const auto engine = make_hard(scene, state);
+        run(*engine, 2e-3, 1e-6);
+        ASSERT_EQ(engine->counters().collisions, 1);
+        // The line of centres is at 30 degrees: the one at rest takes cos(30) of the speed along
+        // it.
+        const Vector3 taken =
+            speed * std::sqrt(0.75) * (-way * std::sqrt(0.75) * along - 0.5 * across);
+        EXPECT_LT((engine->particles().velocity[0] - taken).norm(), 100 * eps * speed)
+            << place << ", axis " << static_cast<int>(axis) << ", way " << way;
+      }
+    }
+  }
+}
+
 TEST(Force, acts_from_the_begin_of_a_window_on) {
   Scene scene = box_scene({1, 1, 1});
   scene.scene.gravity = {0, 0, -g};

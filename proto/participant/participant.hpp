@@ -82,6 +82,7 @@ class Participant {
 
   /// What long work in `configure` is to call now and then; given before it. Without it the
   /// coordinator takes a silence of launch.start_deadline for a hang.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): who keeps it moves it
   virtual void keep_alive(Progress /*alive*/) {}
 
   /// Build everything for this scene and mesh. The committed state is that of time 0.

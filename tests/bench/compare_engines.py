@@ -4,10 +4,11 @@
     compare_engines.py --build BUILD [--scene configs/engines.yaml] [--engines native lammps ...] [--out DIRECTORY] [--check]
 
 Each engine runs the whole scene, one after the other. The table has, of the settled bed, its height (twice the mean height of the centres), and
-as means over the time from `--from` on, the pressure drop over the weight per area and the bed's height; then the largest relative imbalance
-of mass, the time on the wall in all and of the particle side, and the largest memory of the particle server with its children, five times a second.
---check: exit code 1 unless any two engines with springs agree: settled height 1 %, pressure drop 2 %, height 5 %, and all conserve mass to
-1e-12.
+as means over the time from `--from` on, the pressure drop over the weight per area and the bed's height; over the second half of that, the
+root of the mean square of the spheres' speed; then the largest relative imbalance of mass, the time on the wall in all and of the particle
+side, and the largest memory of the particle server with its children, five times a second.
+--check: exit code 1 unless any two engines with springs agree: settled height 1 %, pressure drop 2 %, height 5 %, all conserve mass to 1e-12, and
+in none the spheres lie still.
 """
 import argparse
 import csv
@@ -25,6 +26,7 @@ import numpy
 ALL = ["native", "lammps", "liggghts", "yade", "hard_sphere"]
 LIMITS = {"settled": 0.01, "drop": 0.02, "height": 0.05}
 IMBALANCE = 1e-12
+STILL = 0.01  # m/s: slower is no bubbling bed, whatever its means
 
 
 def children_of(parent):
@@ -83,12 +85,13 @@ def run(build, scene, engine, out, overrides):
 
 
 def measure(out, begin):
-    """What the run tells: settled height [m], drop over weight per area [-], height [m], imbalance [-], particle side [s]."""
+    """What the run tells: settled height [m], drop over weight per area [-], height [m], rms speed in the second half [m/s], imbalance [-], particle side [s]."""
     with h5py.File(out / "results.h5") as results:
         particles = results["particles"]
         records = sorted(particles, key=int)
         times = numpy.array([particles[record].attrs["time"] for record in records])
         heights = numpy.array([2 * particles[record]["position"][:, 2].mean() for record in records])
+        squares = numpy.array([(particles[record]["velocity"][:] ** 2).sum(axis=1).mean() for record in records])
         first = particles[records[0]]
         mass = float((numpy.pi / 6 * (2 * first["radius"][:]) ** 3 * first["density"][:]).sum())
         points = results["mesh/points"][:]
@@ -106,22 +109,24 @@ def measure(out, begin):
         "settled": heights[numpy.argmin(abs(times - 0.4))],
         "drop": drops[drops[:, 0] >= begin, 1].mean() / weight,
         "height": heights[times >= begin].mean(),
+        "speed": numpy.sqrt(squares[times >= 0.5 * (begin + times[-1])].mean()),
         "imbalance": max(abs(float(row["relative_imbalance"])) for row in rows),
         "particles": sum(float(row["wall_dem"]) for row in rows),
     }
 
 
 def table(results):
-    lines = ["| engine | settled height [mm] | pressure drop / weight | bed height [mm] | imbalance | wall [s] | particles [s] | memory [MB] |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+    lines = ["| engine | settled height [mm] | pressure drop / weight | bed height [mm] | rms speed [m/s] | imbalance | wall [s] | particles [s] | memory [MB] |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for engine, one in results.items():
-        lines.append(f"| {engine} | {1e3 * one['settled']:.2f} | {one['drop']:.4f} | {1e3 * one['height']:.1f} | {one['imbalance']:.1e} | "
+        lines.append(f"| {engine} | {1e3 * one['settled']:.2f} | {one['drop']:.4f} | {1e3 * one['height']:.1f} | {one['speed']:.3f} | {one['imbalance']:.1e} | "
                      f"{one['wall']:.1f} | {one['particles']:.1f} | {one['memory'] / 2**20:.0f} |")
     return "\n".join(lines)
 
 
 def disagreements(results):
     found = [f"{engine}: imbalance {one['imbalance']:.2e} > {IMBALANCE}" for engine, one in results.items() if one["imbalance"] > IMBALANCE]
+    found += [f"{engine}: the bed lies still, {one['speed']:.2g} m/s" for engine, one in results.items() if one["speed"] < STILL]
     springs = {engine: one for engine, one in results.items() if engine != "hard_sphere"}  # which has no resting contact
     for name, limit in LIMITS.items():
         for (engine, one), (other, its) in itertools.combinations(springs.items(), 2):

@@ -22,6 +22,7 @@
 #include <ctime>
 #include <fstream>
 #include <map>
+#include <span>
 
 #include "dem_server/backends/native/native_engine.hpp"
 #include "proto/mesh/box.hpp"
@@ -74,20 +75,20 @@ double best(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-void run_windows(ParticleEngine& engine, int steps) {
-  const std::vector<Vector3> none(engine.particles().id.size(), Vector3::Zero());
+/// `none`: a force of zero for each particle.
+void run_windows(ParticleEngine& engine, std::span<const Vector3> none, int steps) {
   for (int step = 0; step < steps; step += bench_steps_per_window) {
     engine.advance(bench_steps_per_window * bench_time_step, bench_steps_per_window, none, {});
     engine.commit();
   }
 }
 
-Rates measure(ParticleEngine& engine, const Options& options) {
+Rates measure(ParticleEngine& engine, std::span<const Vector3> none, const Options& options) {
   Rates rates;
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t clock = std::clock();
-    run_windows(engine, options.steps);
+    run_windows(engine, none, options.steps);
     const double processor = static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     const double work = 1e-6 * options.steps * engine.particles().size();
@@ -120,11 +121,13 @@ void run_case(const BenchBed& bed, int threads, Precision precision, const Optio
   const Scene scene = bench_scene(bed, threads, precision);
   const Mesh mesh = make_box(scene.fluid.mesh);
   ParticleState start = bed.particles;
+  const std::vector<Vector3> none(start.id.size(),
+                                  Vector3::Zero());  // the caller's, not the engine's
   forget_peak_memory();
   const double before = memory("VmRSS");
   const auto engine = make_native_engine(scene, mesh, std::move(start));
-  run_windows(*engine, bench_steps_per_window);
-  const Rates rates = measure(*engine, options);
+  run_windows(*engine, none, bench_steps_per_window);
+  const Rates rates = measure(*engine, none, options);
   const double bytes = memory("VmHWM") - before;
   const EngineCounters counters = engine->counters();
   const double lists = static_cast<double>(std::max<std::int64_t>(1, counters.rebuilds));

@@ -15,6 +15,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace fluxpact::HWY_NAMESPACE {
 
+/// The pairs that do not go through a periodic side.
+template <bool plain, class Real, bool turning>
+HWY_INLINE void pass_direct_pairs(const BlockPass<Real, turning>& pass) {
+  ContactBlock<Real>& contacts = *pass.contacts;
+  pass_pairs<plain, Real, turning, Kind::inner>(pass, contacts.inner, contacts.inner_close);
+  pass_pairs<plain, Real, turning, Kind::outer>(pass, contacts.outer, contacts.outer_close);
+}
+
+template <class Real, bool turning>
+HWY_INLINE void pass_all_pairs(const BlockPass<Real, turning>& pass) {
+  bool plain = false;
+  if constexpr (turning) {
+    plain = is_plain(pass);
+    if (plain) pass_direct_pairs<true>(pass);
+  }
+  if (!plain) pass_direct_pairs<false>(pass);
+  ContactBlock<Real>& contacts = *pass.contacts;
+  pass_pairs<false, Real, turning, Kind::image>(pass, contacts.image, contacts.image_close);
+}
+
 template <class Real, bool turning>
 HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
   std::memset(pass.sum, 0, sizeof(*pass.sum) * (pass.last - pass.first));
@@ -25,9 +45,7 @@ HWY_INLINE void add_contacts(const BlockPass<Real, turning>& pass) {
     go_through<Real, turning, Kind::outer>(pass, contacts.outer, contacts.outer_close);
     go_through<Real, turning, Kind::image>(pass, contacts.image, contacts.image_close);
   }
-  pass_pairs<Real, turning, Kind::inner>(pass, contacts.inner, contacts.inner_close);
-  pass_pairs<Real, turning, Kind::outer>(pass, contacts.outer, contacts.outer_close);
-  pass_pairs<Real, turning, Kind::image>(pass, contacts.image, contacts.image_close);
+  pass_all_pairs(pass);
   pass_plane_list(pass, contacts.planes, contacts.plane_springs);
   pass_touch_list(pass, contacts.surfaces.touches, contacts.surfaces.springs);
 }

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fluxpact::HWY_NAMESPACE {
 
 /// Partners are fetched this many pairs ahead: their rows lie anywhere in the block, or beyond it.
-inline constexpr int fetch_ahead = 64;
+inline constexpr int fetch_ahead = 128;
 
 /// Which of the pairs of a block: inner ones act on both partners, the others on the holder only.
 enum class Kind { inner, outer, image };
@@ -185,11 +185,33 @@ HWY_INLINE void store_pair_springs(const ContactModel& model,
   if (model.rolling == RollingLaw::spring_dashpot) put_vector(lanes.rolling);
 }
 
+/// The commonest law, known to the compiler (`plain`): linear springs and dashpots with friction,
+/// the same for all pairs, and one effective mass. The branches that other laws need are not there.
+inline constexpr ContactModel plain_model{ContactLaw::linear, RollingLaw::none, CohesionLaw::none,
+                                          false, true};
+
+template <class Real>
+HWY_INLINE bool is_plain(const BlockPass<Real, true>& pass) {
+  const ContactModel& model = pass.laws->model;
+  return model.law == ContactLaw::linear && model.rolling == RollingLaw::none &&
+         model.cohesion == CohesionLaw::none && !model.film && model.friction &&
+         pass.laws->one_law && pass.root_masses.pair > 0;
+}
+
+template <bool plain, class Real, bool turning>
+HWY_INLINE const ContactModel& model_of(const BlockPass<Real, turning>& pass) {
+  if constexpr (plain) {
+    return plain_model;
+  } else {
+    return pass.laws->model;
+  }
+}
+
 /// First step: how the partners stand and move to each other.
-template <class Real, bool turning, Kind kind>
+template <bool plain, class Real, bool turning, Kind kind>
 FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const Pair* list,
                                     PairBatch<Real, turning>& batch) {
-  const ContactModel& model = pass.laws->model;
+  const ContactModel& model = model_of<plain>(pass);
   Partners<Real, turning> partners;
   find_partners<Real, turning, kind>(
       pass, [&](int k) { return batch.mine[k]; }, [&](int k) { return batch.other[k]; }, partners);
@@ -206,7 +228,9 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const 
   touch.normal = gap.normal;
   touch.overlap = gap.overlap;
   add_motion(partners, relative.velocity, touch);
-  touch.root_mass = root_mass<Real>(pass.root_masses.pair, relative.velocity.d);
+  if constexpr (!plain) {
+    touch.root_mass = root_mass<Real>(pass.root_masses.pair, relative.velocity.d);
+  }
   if (needs_curvature(model)) {
     touch.inverse_radius = curvature<Real>(partners.a, relative.apart.d);
   }
@@ -222,17 +246,26 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const 
 }
 
 /// Second step: springs and forces.
-template <class Real, bool turning>
+template <bool plain, class Real, bool turning>
 FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const Pair* list,
                                    PairBatch<Real, turning>& batch) {
   const Lanes<Real> d;
-  const ContactModel& model = pass.laws->model;
+  const ContactModel& model = model_of<plain>(pass);
   auto spring = load_pair_springs<Real>(model, batch.springs);
   auto out = no_force<Real>();
   const std::uint8_t bits[8] = {static_cast<std::uint8_t>(batch.near)};
-  contact_force<turning>(
-      d, model, law_of(*pass.laws, [&](int k) { return list[batch.place[k]].law; }), batch.touch,
-      hn::Set(d, static_cast<Real>(pass.spring_step)), spring, hn::LoadMaskBits(d, bits), out);
+  LawLanes<hn::Vec<Lanes<Real>>> law;
+  if constexpr (plain) {
+    law = load_columns(d, model, [&](LawColumn name) HWY_ATTR {
+      return hn::Set(d, pass.laws->column(name)[pass.laws->any]);
+    });
+    batch.touch.root_mass = hn::Set(d, static_cast<Real>(pass.root_masses.pair));
+  } else {
+    law = law_of(*pass.laws, [&](int k) { return list[batch.place[k]].law; });
+  }
+  contact_force<turning>(d, model, law, batch.touch,
+                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring,
+                         hn::LoadMaskBits(d, bits), out);
   store_pair_springs<Real>(model, spring, batch.springs);
   batch.out.force = out.force;
   if constexpr (turning) {
@@ -242,13 +275,13 @@ FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const P
 }
 
 /// Third step: to the sums of the particles.
-template <class Real, bool turning, Kind kind>
+template <bool plain, class Real, bool turning, Kind kind>
 FLUXPACT_CONTACT_STEP void hand_over(const BlockPass<Real, turning>& pass,
                                      const PairBatch<Real, turning>& batch) {
   const auto holder = [&](int k) { return batch.mine[k]; };
   const auto partner = [&](int k) { return batch.other[k]; };
   if constexpr (turning) {
-    if (pass.laws->model.rolling != RollingLaw::none) {
+    if (model_of<plain>(pass).rolling != RollingLaw::none) {
       ForceLanes<hn::Vec<Lanes<Real>>> own = batch.out;
       own.lever = plus_scaled(own.lever, batch.roll_a.inverse_radius, own.torque);
       const LoadRows<Real, turning> rows(own);
@@ -280,7 +313,7 @@ HWY_INLINE void fetch(const Body<Real, turning>* from, const Other& other) {
 }
 
 /// The forces of all close pairs of one kind.
-template <class Real, bool turning, Kind kind>
+template <bool plain, class Real, bool turning, Kind kind>
 HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const std::vector<Pair>& pairs,
                            ClosePairs<Real>& close) {
   constexpr int batch_size = ClosePairs<Real>::batch_size;
@@ -302,10 +335,13 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const std::vect
       const int ahead = std::min(at + fetch_ahead, ahead_most);
       const std::int32_t* later = close.batch(ahead / batch_size).other + ahead % batch_size;
       fetch(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
+      if constexpr (kind == Kind::inner) {
+        for (int k = 0; k < width; ++k) hwy::Prefetch(pass.sum + later[k]);
+      }
     }
-    for (int b = 0; b < full; ++b) approach<Real, turning, kind>(pass, list, batches[b]);
-    for (int b = 0; b < full; ++b) respond<Real, turning>(pass, list, batches[b]);
-    for (int b = 0; b < full; ++b) hand_over<Real, turning, kind>(pass, batches[b]);
+    for (int b = 0; b < full; ++b) approach<plain, Real, turning, kind>(pass, list, batches[b]);
+    for (int b = 0; b < full; ++b) respond<plain, Real, turning>(pass, list, batches[b]);
+    for (int b = 0; b < full; ++b) hand_over<plain, Real, turning, kind>(pass, batches[b]);
   }
 }
 

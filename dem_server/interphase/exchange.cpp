@@ -20,6 +20,9 @@ const Vector3 no_vector = Vector3::Zero();
 // Whose offers are made one after the other: all that is read and written of them stays in cache.
 constexpr int rows_at_once = 1024;
 
+/// θ of b = ζ Δt/m: the weight of the window's end in its drag.
+double weight_of_end(double over) { return std::min(1.0, 0.5 + 1.5 * over); }
+
 /// v*, and 1 − s: the part of a further force that would move the particle.
 struct Foreseen {
   Vector3 velocity;
@@ -275,7 +278,7 @@ void OfferMaker::add_known(const ExchangeSettings& settings, const FluidSeen& fl
   }
 }
 
-/// ζ -> k, v* and what returns.
+/// ζ -> k, q and what returns.
 void OfferMaker::eliminate(const ExchangeSettings& settings, const FluidSeen& fluid,
                            const ParticleState& particles, const ParticleBulk& bulk,
                            const Prediction& past, const Rows& rows, Offer& offer) const {
@@ -287,7 +290,10 @@ void OfferMaker::eliminate(const ExchangeSettings& settings, const FluidSeen& fl
     const Foreseen coming = foresee(settings, past, offer, gradient, particles, bulk, i);
     offer.velocity[i] = coming.velocity;
     if (settings.mobile && !particles.is_fixed(i)) {
-      offer.coefficient[i] /= 1 + offer.coefficient[i] * offer.window / bulk.mass[i];
+      const double over = offer.coefficient[i] * offer.window / bulk.mass[i];
+      const double end = settings.added_mass ? 1 : weight_of_end(over);
+      offer.coefficient[i] /= 1 + end * over;
+      offer.velocity[i] += (1 - end) * (velocity_of(particles, past, i) - coming.velocity);
     }
     if (settings.pressure_returns) {
       offer.returned[i] =

@@ -265,10 +265,38 @@ TEST(AddedMass, brings_slip_down_as_the_closed_form_says_at_any_window_and_densi
   }
 }
 
+TEST(Drag, brings_slip_down_as_the_closed_form_says_at_any_window_and_loading) {
+  for (const double over : {1e-3, 0.03, 0.33, 1.0, 30.0, 1e4}) {  // Δt/τ
+    for (const double share : {1e-3, 0.1, 10.0, 1e4}) {           // fluid over particle
+      Pair pair(1000);
+      pair.settings.added_mass = false;
+      pair.map();
+      const double mass = pair.bulk.mass[0];
+      pair.fluid_mass = share * mass;
+      const double window = over * mass / stokes_drag({1, 0.1, 0}, pair.settings.fluid);
+      // The fluid answers by its end: s1 = u1 − v1 with v1 − v0 = B (u1 − v0).
+      const double given = over / (1 + std::min(1.0, 0.5 + 1.5 * over) * over);
+      const double factor = (1 - given) * share / (share + given);
+      const Vector3 momentum = pair.fluid_mass * pair.velocity;
+      for (int i = 0; i < 3; ++i) {
+        const Vector3 slip = pair.velocity - pair.particles.velocity[0];
+        pair.advance(window);
+        const Vector3 now = pair.velocity - pair.particles.velocity[0];
+        EXPECT_LE((now - factor * slip).norm(), 1e-14) << over << ' ' << share;
+        EXPECT_GE(now.dot(slip), -1e-14);  // no overshoot
+        const Vector3 total = pair.fluid_mass * pair.velocity + mass * pair.particles.velocity[0];
+        EXPECT_LE((total - momentum).norm(), 1e-14 * momentum.norm());
+      }
+    }
+  }
+}
+
 /// A uniform suspension through which a given flux goes: one sphere in one cell where u = 0, and ∇p
 /// is what that takes. Returns the largest |v| over 400 windows, from v = 1.
-double largest_speed(double solids, double over, double ratio, bool eliminated) {
+double largest_speed(double solids, double over, double ratio, bool eliminated,
+                     bool added_mass = true) {
   Pair pair(ratio);
+  pair.settings.added_mass = added_mass;
   pair.particles.radius[0] = std::cbrt(0.75 * solids / std::numbers::pi);  // in 1 m³
   measure_bulk(pair.particles, pair.bulk);
   pair.particles.velocity[0] = {1, 0, 0};
@@ -293,6 +321,20 @@ double largest_speed(double solids, double over, double ratio, bool eliminated) 
     largest = std::max(largest, pair.particles.velocity[0].norm());
   }
   return largest;
+}
+
+TEST(Drag, is_stable_beside_a_lagged_pressure_gradient_as_far_as_that_of_the_end_alone) {
+  // B (1 + 2 φ) < 2 ε with B = b/(1 + b).
+  for (const double solids : {0.1, 0.3, 0.4, 0.5}) {
+    const double room = 3 - 4 * (1 - solids);
+    const double limit = room > 0 ? 2 * (1 - solids) / room : 1e5;
+    for (const double over : {1e-3, 0.03, 0.1, 0.2, 0.3, 0.34, 0.5, 0.97 * limit}) {
+      EXPECT_LE(largest_speed(solids, over, 1000, false, false), 1) << solids << ' ' << over;
+    }
+    if (room > 0) {
+      EXPECT_GT(largest_speed(solids, 1.1 * limit, 1000, false, false), 10) << solids;
+    }
+  }
 }
 
 TEST(PressureReturn, solves_the_whole_equation_of_motion_with_the_gradient_of_the_answer) {

@@ -50,6 +50,7 @@
 
 namespace fluxpact {
 
+class OwnDisturbance;
 struct Prediction;
 
 /// What stays the same for a whole run.
@@ -71,6 +72,7 @@ struct ExchangeSettings {
   bool mobile = true;  ///< false: all particles count as infinitely heavy, not only those
                        ///< that are fixed
   int threads = 1;
+  const OwnDisturbance* own = nullptr;  ///< none: drag is that of the slip as seen
 
   /// Whether an offer has forces E beside the drag.
   bool has_known() const { return viscous || added_mass || saffman_lift || magnus_lift; }
@@ -153,7 +155,7 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
 /// Fills weights (already built), k and q of an offer for a coming window of `offer.window`.
 /// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are
 /// reused. Throws NumericsError naming the particle if its drag coefficient is negative or not
-/// finite.
+/// finite, or if more than half of its slip is its own disturbance.
 class OfferMaker {
  public:
   /// first .. last − 1 of the particles.
@@ -171,6 +173,9 @@ class OfferMaker {
 
  private:
   DragSurvey find_drag(const ExchangeSettings& settings, const Rows& rows, Offer& offer);
+  int correct(const ExchangeSettings& settings, const FluidSeen& fluid,
+              std::span<const double> voidage, const ParticleState& particles,
+              const Prediction& past, const Rows& rows, Offer& offer);
   void add_known(const ExchangeSettings& settings, const FluidSeen& fluid,
                  const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
                  const Rows& rows, Offer& offer);

@@ -29,6 +29,26 @@ bool narrow(VoidageMap map) {
   return map == VoidageMap::exact || map == VoidageMap::centroid || map == VoidageMap::satellite;
 }
 
+double mean_edge(const Mesh& mesh) {
+  double volume = 0;
+  for (const double cell : mesh.cell_volumes) volume += cell;
+  return std::cbrt(volume / static_cast<double>(mesh.cell_volumes.size()));
+}
+
+/// Of a correction that is for single spheres.
+std::vector<std::string> warnings_of_many(const Scene& scene, const Mesh& mesh) {
+  for (const InsertionSettings& entry : scene.particles.insertion) {
+    const std::optional<double> fraction = solid_fraction(entry, mesh, 4 * mean_edge(mesh));
+    if (!fraction || *fraction < few) continue;
+    return {fmt::format(
+        "interphase.self_disturbance 'corrected' is for single spheres, and those of '{}' fill "
+        "{:.2g} % of where they begin: drag laws of beds mean the flow that all spheres have made; "
+        "take self_disturbance: none (docs/theory.md, section 3)",
+        entry.material, 100 * *fraction)};
+  }
+  return {};
+}
+
 struct Worst {
   double share = 0;
   double diameter = 0;  // [m]
@@ -74,13 +94,13 @@ double terminal_reynolds(const FluidSettings& fluid, double gravity, double diam
 
 std::vector<std::string> self_disturbance_warnings(const Scene& scene, const Mesh& mesh) {
   const double gravity = scene.scene.gravity.norm();
-  if (!narrow(scene.interphase.voidage.map) || scene.interphase.drag == DragLaw::none ||
-      gravity == 0) {
+  const InterphaseSettings& interphase = scene.interphase;
+  if (interphase.self_disturbance == SelfDisturbance::corrected)
+    return warnings_of_many(scene, mesh);
+  if (!narrow(interphase.voidage.map) || interphase.drag == DragLaw::none || gravity == 0) {
     return {};
   }
-  double volume = 0;
-  for (const double cell : mesh.cell_volumes) volume += cell;
-  const double edge = std::cbrt(volume / static_cast<double>(mesh.cell_volumes.size()));
+  const double edge = mean_edge(mesh);
   Worst worst;
   for (const InsertionSettings& entry : scene.particles.insertion) {
     const std::optional<double> fraction = solid_fraction(entry, mesh, 4 * edge);
@@ -97,7 +117,8 @@ std::vector<std::string> self_disturbance_warnings(const Scene& scene, const Mes
       "interphase.voidage.map '{}' in cells of {:.2g} diameters: a sphere of '{}' slows down the "
       "fluid that it sees, and its drag can be up to {:.2g} % too small (at its terminal slip, Re "
       "= "
-      "{:.2g}); where single particles matter take map: kernel or diffusion with width: {:.2g} m "
+      "{:.2g}); where single particles matter take self_disturbance: corrected in cells of "
+      "five diameters and more, or map: kernel or diffusion with width: {:.2g} m "
       "(docs/theory.md, section 3)",
       name_of(scene.interphase.voidage.map), edge / worst.diameter, worst.material,
       100 * worst.share, worst.reynolds, width)};

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dem_server/interphase/forces.hpp"
+#include "dem_server/interphase/own_disturbance.hpp"
 #include "dem_server/interphase/prediction.hpp"
 #include "proto/base/errors.hpp"
 #include "proto/participant/asked_fields.hpp"
@@ -19,6 +20,9 @@ const Vector3 no_vector = Vector3::Zero();
 
 // Whose offers are made one after the other: all that is read and written of them stays in cache.
 constexpr int rows_at_once = 1024;
+
+/// θ of b = ζ Δt/m: the weight of the window's end in its drag.
+double weight_of_end(double over) { return std::min(1.0, 0.5 + 1.5 * over); }
 
 /// v*, and 1 − s: the part of a further force that would move the particle.
 struct Foreseen {
@@ -206,8 +210,9 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
   offer.returned.resize(settings.pressure_returns ? size : 0);
   std::int64_t outside = 0;
   int bad = count;  // the first one, for any number of threads
+  int hidden = count;
 #pragma omp parallel for schedule(static) num_threads(settings.threads) reduction(+ : outside) \
-    reduction(min : bad)
+    reduction(min : bad, hidden)
   for (int first = 0; first < count; first += rows_at_once) {
     const Rows rows{first, std::min(first + rows_at_once, count)};
     for (int i = rows.first; i < rows.last; ++i) {
@@ -225,10 +230,23 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
       bad = std::min(bad, survey.first_bad);
       continue;
     }
+    if (settings.own != nullptr && further) {
+      hidden = std::min(hidden, correct(settings, fluid, voidage, particles, past, rows, offer));
+    }
     if (!offer.known.empty()) add_known(settings, fluid, particles, bulk, past, rows, offer);
     eliminate(settings, fluid, particles, bulk, past, rows, offer);
   }
   survey_ = {outside, bad < count ? bad : -1};
+  if (bad == count && hidden < count) {
+    const Vector3& x = particles.position[hidden];
+    throw NumericsError(
+        "interphase.self_disturbance: corrected: particle {} at ({}, {}, {}) m would not see more "
+        "than {} % of its slip for what it does itself to the fluid in its cells, and no "
+        "correction "
+        "holds there: it is for single particles in cells of five diameters and more; take larger "
+        "cells, or interphase.voidage kernel or diffusion with self_disturbance: none",
+        particles.id[hidden], x.x(), x.y(), x.z(), 100 * most_unseen);
+  }
   if (bad == count) return;
   const Vector3& x = particles.position[bad];
   throw_bad_drag(
@@ -246,6 +264,28 @@ DragSurvey OfferMaker::find_drag(const ExchangeSettings& settings, const Rows& r
                                         std::span(offer.coefficient).subspan(first, size));
   if (survey.first_bad >= 0) survey.first_bad += rows.first;
   return survey;
+}
+
+/// ζ of the slip without their own disturbance, for the slip with it. Returns the first of the rows
+/// of whose slip too much is not seen, or the number of all particles.
+int OfferMaker::correct(const ExchangeSettings& settings, const FluidSeen& fluid,
+                        std::span<const double> voidage, const ParticleState& particles,
+                        const Prediction& past, const Rows& rows, Offer& offer) {
+  for (int i = rows.first; i < rows.last; ++i) {
+    Vector3 seen =
+        offer.weights.gather(i, fluid.velocity, no_vector) - velocity_of(particles, past, i);
+    if (!offer.eddies.empty()) seen += lead_[i];
+    const auto drag = [&](double slip) {
+      points_[i].slip = slip;
+      find_drag(settings, {i, i + 1}, offer);
+      return offer.coefficient[i];
+    };
+    const double response = settings.own->response(offer.weights, i, settings.fluid, voidage, seen);
+    const Undisturbed found = undisturbed(points_[i].slip, response, drag);
+    if (!(found.share <= most_unseen)) return i;
+    offer.coefficient[i] = found.drag / (1 - found.share);
+  }
+  return particles.size();
 }
 
 /// Added mass joins ζ; E.
@@ -275,7 +315,7 @@ void OfferMaker::add_known(const ExchangeSettings& settings, const FluidSeen& fl
   }
 }
 
-/// ζ -> k, v* and what returns.
+/// ζ -> k, q and what returns.
 void OfferMaker::eliminate(const ExchangeSettings& settings, const FluidSeen& fluid,
                            const ParticleState& particles, const ParticleBulk& bulk,
                            const Prediction& past, const Rows& rows, Offer& offer) const {
@@ -287,7 +327,10 @@ void OfferMaker::eliminate(const ExchangeSettings& settings, const FluidSeen& fl
     const Foreseen coming = foresee(settings, past, offer, gradient, particles, bulk, i);
     offer.velocity[i] = coming.velocity;
     if (settings.mobile && !particles.is_fixed(i)) {
-      offer.coefficient[i] /= 1 + offer.coefficient[i] * offer.window / bulk.mass[i];
+      const double over = offer.coefficient[i] * offer.window / bulk.mass[i];
+      const double end = settings.added_mass ? 1 : weight_of_end(over);
+      offer.coefficient[i] /= 1 + end * over;
+      offer.velocity[i] += (1 - end) * (velocity_of(particles, past, i) - coming.velocity);
     }
     if (settings.pressure_returns) {
       offer.returned[i] =

@@ -1,16 +1,22 @@
 // Momentum between fluid and particles, exact in both directions; drag is stable for any window.
 //
 // Partial elimination: at the end of a window each particle i offers the fluid the law
-//   impulse(u) = Δt k (u − v*),   k = ζ/(1 + b),  b = ζ Δt/m,
-// where v* is the velocity that it would have after the coming window without drag. The fluid
-// solves with the sums of k and k v* in its cells. In the next window the impulse is evaluated
-// ONCE, with the stored k, v* and weights and the fluid's answer u, and acts on the particle as a
-// constant force. So what the fluid lost the particles gain, to round-off; and a particle in free
-// flight ends at (v* + b u)/(1 + b), the implicit Euler value, however large b is. Partial
-// elimination of interphase drag: Spalding, in Recent Advances in Numerical Methods in Fluids 1
-// (1980) 139-167.
+//   impulse(u) = Δt k (u − q),   k = ζ/(1 + θ b),  b = ζ Δt/m,  q = θ v* + (1 − θ) v0,
+// where v0 is its velocity and v* the one that it would have after the coming window without drag.
+// The fluid solves with the sums of k and k q in its cells. In the next window the impulse is
+// evaluated ONCE, with the stored k, q and weights and the fluid's answer u, and acts on the
+// particle as a constant force. So what the fluid lost the particles gain, to round-off; and a
+// particle in free flight has had the drag Δt ζ (u − θ v1 − (1 − θ) v0) of its velocity v1 at the
+// end and v0 at the start: with θ = 1, Euler's implicit rule, v1 = (v* + b u)/(1 + b), stable
+// however large b is. Partial elimination of interphase drag: Spalding, in Recent Advances in
+// Numerical Methods in Fluids 1 (1980) 139-167.
 //
-// Other forces, if the scene asks for them, enter the same law: impulse(u) = Δt [k (u − v*) + E].
+// θ = 1/2 + 3/2 b up to b = 1/3, and 1 from there: second order in b where the window resolves the
+// drag. With θ in [1/2, 1] the slip never overshoots, and what bounds b (below) is above 1/3 for
+// φ < 0.7, so it bounds it as for θ = 1. (The exact θ = 1/(1 − e^−b) − 1/b, of a constant u, is no
+// better for b → 0, but halves that bound: k Δt/m is 1 − e^−b then, not b/(1 + b).)
+//
+// Other forces, if the scene asks for them, enter the same law: impulse(u) = Δt [k (u − q) + E].
 // Viscous force and lift are E, known from the fluid's last state; v* has their effect, too. The
 // viscous force takes (1 − ε) of the fluid's own, a window late: stable, since the fluid keeps the
 // whole of it implicit.
@@ -20,9 +26,9 @@
 // The first part is a drag: Z = ζ + M/Δt stands in the place of ζ. The last is in E. The second
 // belongs to the drag whatever contacts do, and so does ζ u' of an eddy: together a lead
 //   l = [ζ u' − M/Δt (u0 − v0)]/Z,   impulse(u) = Δt k (u − (v* − l)),   k = Z/(1 + Z Δt/m),
-// which is Z (u1 − v1 + l) for the velocity v1 to which it leads. No density ratio is too small:
-// without other forces the slip becomes s1 = s0 (1 + R M)/(1 + R (M + ζ Δt)), R = 1/m + 1/m_fluid,
-// between 0 and s0 for any Δt.
+// which is Z (u1 − v1 + l) for the velocity v1 to which it leads: θ is 1 with added mass. No
+// density ratio is too small: without other forces the slip becomes s1 = s0 (1 + R M)/(1 + R (M + ζ
+// Δt)), R = 1/m + 1/m_fluid, between 0 and s0 for any Δt.
 //
 // With it the pressure gradient is eliminated, too (model a), because a liquid and its particles
 // accelerate each other through it: v* = v*_0 − a ∇p, a = (1 − s) Δt/ρ_p (s: see prediction.hpp),
@@ -44,6 +50,7 @@
 
 namespace fluxpact {
 
+class OwnDisturbance;
 struct Prediction;
 
 /// What stays the same for a whole run.
@@ -65,6 +72,7 @@ struct ExchangeSettings {
   bool mobile = true;  ///< false: all particles count as infinitely heavy, not only those
                        ///< that are fixed
   int threads = 1;
+  const OwnDisturbance* own = nullptr;  ///< none: drag is that of the slip as seen
 
   /// Whether an offer has forces E beside the drag.
   bool has_known() const { return viscous || added_mass || saffman_lift || magnus_lift; }
@@ -113,7 +121,7 @@ struct Offer {
                         ///< (first_window.hpp)
   ParticleCellWeights weights;
   std::vector<double> coefficient;  ///< k [kg/s], one a particle
-  std::vector<Vector3> velocity;    ///< v* − l [m/s], one a particle
+  std::vector<Vector3> velocity;    ///< q − l [m/s], one a particle
   // Empty unless the settings ask for it; one a particle.
   std::vector<Vector3> known;    ///< E [N]
   std::vector<double> returned;  ///< k a [m³]: what drag hands back of the pressure gradient
@@ -122,7 +130,7 @@ struct Offer {
 
 /// What acts on the particles over one window, one row a particle; all constant over the window.
 struct WindowForces {
-  std::vector<Vector3> drag_impulse;  ///< J = Δt k (Σ w u − v*) [N s], with all that is above
+  std::vector<Vector3> drag_impulse;  ///< J = Δt k (Σ w u − q) [N s], with all that is above
   std::vector<Vector3>
       impulse;  ///< J + Δt (E − V_p Σ w ∇p_d) [N s]: what the fluid gives and feels
   std::vector<Vector3> force;  ///< [N] impulse/Δt, and the buoyancy −ρ V_p g: for the engine
@@ -144,10 +152,10 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
                    const ParticleState& particles, const ParticleBulk& bulk, std::int64_t step,
                    double length, WindowForces& forces);
 
-/// Fills weights (already built), k and v* of an offer for a coming window of `offer.window`.
+/// Fills weights (already built), k and q of an offer for a coming window of `offer.window`.
 /// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are
 /// reused. Throws NumericsError naming the particle if its drag coefficient is negative or not
-/// finite.
+/// finite, or if more than half of its slip is its own disturbance.
 class OfferMaker {
  public:
   /// first .. last − 1 of the particles.
@@ -165,6 +173,9 @@ class OfferMaker {
 
  private:
   DragSurvey find_drag(const ExchangeSettings& settings, const Rows& rows, Offer& offer);
+  int correct(const ExchangeSettings& settings, const FluidSeen& fluid,
+              std::span<const double> voidage, const ParticleState& particles,
+              const Prediction& past, const Rows& rows, Offer& offer);
   void add_known(const ExchangeSettings& settings, const FluidSeen& fluid,
                  const ParticleState& particles, const ParticleBulk& bulk, const Prediction& past,
                  const Rows& rows, Offer& offer);
@@ -177,7 +188,7 @@ class OfferMaker {
   std::vector<Vector3> lead_;  ///< l [m/s]; empty without added mass and dispersion
 };
 
-/// B = Σ w k [kg/s] and S = Σ w (k v* − E) [N], one row a cell: the force on the fluid is S − B u,
+/// B = Σ w k [kg/s] and S = Σ w (k q − E) [N], one row a cell: the force on the fluid is S − B u,
 /// less A ∇p where pressure returns.
 void deposit_offer(const Offer& offer, int threads, std::span<double> drag_coefficient,
                    std::span<Vector3> drag_source);

@@ -58,6 +58,10 @@ void ParticleParticipant::configure(const Scene& scene, const Mesh& mesh) {
   if (particles_flow(scene)) flow_.emplace(scene, mesh, engine_->particles());
   builder_.emplace(mesh, scene.interphase.voidage, settings_.threads);
   excess_.emplace(mesh, scene.interphase.voidage.smallest);
+  own_.reset();
+  if (scene.interphase.self_disturbance == SelfDisturbance::corrected) {
+    settings_.own = &own_.emplace(mesh);
+  }
   sub_steps_ = sub_steps(scene);
   first_window_ = scene.coupling.window;
   cell_volumes_ = mesh.cell_volumes;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dem_server/interphase/exchange.hpp"
+#include "dem_server/interphase/own_disturbance.hpp"
 #include "dem_server/participant/late_exchange.hpp"
 #include "dem_server/participant/particle_flow.hpp"
 #include "proto/participant/participant.hpp"
@@ -79,8 +80,9 @@ class ParticleParticipant : public Participant {
   std::unique_ptr<ParticleEngine> engine_;
   std::optional<WeightsBuilder> builder_;
   std::optional<ExcessFinder> excess_;
-  std::optional<ParticleFlow> flow_;  ///< none: nobody can come in or leave
-  std::optional<LateExchange> late_;  ///< of coupling.scheme parallel
+  std::optional<OwnDisturbance> own_;  ///< none: drag is that of the fluid as it is
+  std::optional<ParticleFlow> flow_;   ///< none: nobody can come in or leave
+  std::optional<LateExchange> late_;   ///< of coupling.scheme parallel
   ExchangeSettings settings_;
   int sub_steps_ = 1;
   double first_window_ = 0;  ///< [s]

@@ -9,7 +9,7 @@ namespace fluxpact::field {
 inline constexpr auto voidage = "voidage";  ///< ε^{n+1} [-]
 inline constexpr auto drag_coefficient =
     "drag_coefficient";  ///< B = Σ w k [kg/s]: force on the fluid is S − B u
-inline constexpr auto drag_source = "drag_source";      ///< S = Σ w (k v* − E) [N], vector
+inline constexpr auto drag_source = "drag_source";      ///< S = Σ w (k q − E) [N], vector
 inline constexpr auto impulse_given = "impulse_given";  ///< Σ w I: impulse that the fluid gave the
                                                         ///< particles in this window [N s], vector
 inline constexpr auto particle_velocity =

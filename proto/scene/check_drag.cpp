@@ -1,9 +1,11 @@
-// What must hold for a drag law of the user's own, as far as it can be tried before the run.
+// What must hold for a drag law of the user's own, as far as it can be tried before the run; and
+// for the slip that the law is given.
 #include <algorithm>
 #include <cmath>
 
 #include "proto/scene/check.hpp"
 #include "proto/scene/drag_formula.hpp"
+#include "proto/scene/names.hpp"
 
 namespace fluxpact {
 namespace {
@@ -81,9 +83,24 @@ void try_formula(const Scene& scene, const DragFormula& formula, Findings& findi
   }
 }
 
+void check_self_disturbance(const InterphaseSettings& interphase, Findings& findings) {
+  const VoidageMap map = interphase.voidage.map;
+  const bool narrow =
+      map == VoidageMap::exact || map == VoidageMap::centroid || map == VoidageMap::satellite;
+  if (interphase.self_disturbance == SelfDisturbance::none || narrow ||
+      !findings.sound("interphase.self_disturbance") || !findings.sound("interphase.voidage")) {
+    return;
+  }
+  findings.add("interphase.self_disturbance",
+               fmt::format("`corrected` is for the maps exact, centroid and satellite, and "
+                           "interphase.voidage is `{}`; remove it, or take one of these",
+                           name_of(map)));
+}
+
 }  // namespace
 
 void check_drag(const Scene& scene, Findings& findings) {
+  check_self_disturbance(scene.interphase, findings);
   if (scene.interphase.drag != DragLaw::expression ||
       !findings.sound("interphase.drag_expression") || !findings.sound("interphase.drag")) {
     return;

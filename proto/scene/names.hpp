@@ -255,6 +255,11 @@ inline constexpr auto enum_names<Crowding> = std::to_array<Named<Crowding>>({
     {Crowding::none, "none"},
     {Crowding::zuber, "zuber"},
 });
+template <>
+inline constexpr auto enum_names<SelfDisturbance> = std::to_array<Named<SelfDisturbance>>({
+    {SelfDisturbance::none, "none"},
+    {SelfDisturbance::corrected, "corrected"},
+});
 
 /// The word for a value.
 template <class Enum>

@@ -437,6 +437,7 @@ enum class InterphaseForce {
 };
 enum class Crowding { none, zuber };
 enum class PressureModel { a, b };
+enum class SelfDisturbance { none, corrected };
 
 /// A solid phase given by a formula, at rest, without particles: for verification.
 struct PrescribedSettings {
@@ -491,6 +492,7 @@ struct InterphaseSettings {
   DragLaw drag = DragLaw::gidaspow;
   SyamlalObrienSettings syamlal_obrien;    ///< drag: syamlal_obrien
   DragExpressionSettings drag_expression;  ///< drag: expression
+  SelfDisturbance self_disturbance = SelfDisturbance::none;
   std::vector<InterphaseForce> forces{InterphaseForce::pressure_gradient};
   Crowding added_mass_crowding = Crowding::none;
   int dispersion_seed = 1;

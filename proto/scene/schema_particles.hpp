@@ -402,6 +402,13 @@ void describe(Visit& visit, InterphaseSettings& interphase) {
          .only_with = "drag: expression",
          .meaning = "The formula."},
         interphase.drag_expression);
+  visit({.name = "self_disturbance",
+         .meaning = "`corrected`: the drag is that of the flow without the share of it that the "
+                    "particle itself has slowed down in its cells, for single particles in cells "
+                    "of five diameters and more (`exact`, `centroid`, `satellite`). `none`: that "
+                    "of the flow as it is, as drag laws of beds mean it. docs/theory.md, section "
+                    "3."},
+        interphase.self_disturbance);
   visit({.name = "forces",
          .meaning = "Further forces of the fluid on the particles (docs/theory.md, section 3): "
                     "`pressure_gradient`, buoyancy included; `viscous`: the divergence of the "

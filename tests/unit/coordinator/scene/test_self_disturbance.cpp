@@ -63,7 +63,7 @@ TEST(SelfDisturbance, is_told_with_its_number_and_what_helps) {
   const Scene scene = few_in_gas(5e-4);
   ASSERT_EQ(warnings(scene).size(), 1U);
   for (const char* part : {"interphase.voidage.map 'exact'", "5 diameters", "'glass'", "7.",
-                           "width: 0.002 m", "Re = 3.1"}) {
+                           "self_disturbance: corrected", "width: 0.002 m", "Re = 3.1"}) {
     EXPECT_NE(warnings(scene).front().find(part), std::string::npos) << part << warnings(scene)[0];
   }
 }
@@ -79,6 +79,12 @@ TEST(SelfDisturbance, is_not_told_where_it_does_not_matter) {
   Scene from_file = few_in_gas(5e-4);
   from_file.particles.insertion.front().type = InsertionType::file;
   EXPECT_TRUE(warnings(from_file).empty());
+  Scene corrected = few_in_gas(5e-4);
+  corrected.interphase.self_disturbance = SelfDisturbance::corrected;
+  EXPECT_TRUE(warnings(corrected).empty());
+  corrected.particles.insertion.front().count = 60000;
+  ASSERT_EQ(warnings(corrected).size(), 1U);  // a bed
+  EXPECT_NE(warnings(corrected).front().find("is for single spheres"), std::string::npos);
   Scene floating = few_in_gas(5e-4);
   floating.scene.gravity.setZero();
   EXPECT_TRUE(warnings(floating).empty());

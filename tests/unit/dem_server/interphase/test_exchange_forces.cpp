@@ -10,7 +10,9 @@
 
 #include "boxes.hpp"
 #include "dem_server/interphase/forces.hpp"
+#include "dem_server/interphase/own_disturbance.hpp"
 #include "dem_server/interphase/prediction.hpp"
+#include "proto/base/errors.hpp"
 #include "proto/scene/names.hpp"
 
 namespace fluxpact {
@@ -265,10 +267,114 @@ TEST(AddedMass, brings_slip_down_as_the_closed_form_says_at_any_window_and_densi
   }
 }
 
+TEST(Drag, brings_slip_down_as_the_closed_form_says_at_any_window_and_loading) {
+  for (const double over : {1e-3, 0.03, 0.33, 1.0, 30.0, 1e4}) {  // Δt/τ
+    for (const double share : {1e-3, 0.1, 10.0, 1e4}) {           // fluid over particle
+      Pair pair(1000);
+      pair.settings.added_mass = false;
+      pair.map();
+      const double mass = pair.bulk.mass[0];
+      pair.fluid_mass = share * mass;
+      const double window = over * mass / stokes_drag({1, 0.1, 0}, pair.settings.fluid);
+      // The fluid answers by its end: s1 = u1 − v1 with v1 − v0 = B (u1 − v0).
+      const double given = over / (1 + std::min(1.0, 0.5 + 1.5 * over) * over);
+      const double factor = (1 - given) * share / (share + given);
+      const Vector3 momentum = pair.fluid_mass * pair.velocity;
+      for (int i = 0; i < 3; ++i) {
+        const Vector3 slip = pair.velocity - pair.particles.velocity[0];
+        pair.advance(window);
+        const Vector3 now = pair.velocity - pair.particles.velocity[0];
+        EXPECT_LE((now - factor * slip).norm(), 1e-14) << over << ' ' << share;
+        EXPECT_GE(now.dot(slip), -1e-14);  // no overshoot
+        const Vector3 total = pair.fluid_mass * pair.velocity + mass * pair.particles.velocity[0];
+        EXPECT_LE((total - momentum).norm(), 1e-14 * momentum.norm());
+      }
+    }
+  }
+}
+
+/// One sphere at `place`, in cells of 1 m.
+struct InCubes {
+  explicit InCubes(const Vector3& place, VoidageMap map = VoidageMap::exact) {
+    particles.position[0] = place;
+    WeightsBuilder(mesh, map, 1).build(particles, 1, weights);
+  }
+  double response(const FluidProperties& fluid, const Vector3& slip) const {
+    return own.response(weights, 0, fluid, voidage, slip);
+  }
+
+  Mesh mesh = box({5, 5, 5}, {5, 5, 5});
+  OwnDisturbance own{mesh};
+  ParticleState particles = Pair(1).particles;
+  ParticleCellWeights weights;
+  std::vector<double> voidage = std::vector<double>(125, 1.0);
+};
+
+TEST(OwnDisturbance, of_one_cell_is_what_flow_and_viscosity_carry_out_of_it) {
+  const InCubes cubes({2.5, 2.5, 2.5});
+  const Vector3 slip(0.3, -0.4, 1.2);
+  const double out = 1.2 * 1.9 + 6 * 0.7;  // ρ Σ|s_a| h² + 6 μ h
+  EXPECT_NEAR(cubes.response({1.2, 0.7}, slip) * 1.5 * out, 1, 1e-14);
+}
+
+TEST(OwnDisturbance, of_cells_that_share_a_sphere_is_that_of_their_wake) {
+  // Where flow rules the wake counts: not how long, but how wide what makes it is.
+  const FluidProperties fluid{1.2, 1e-14};
+  const Vector3 slip(0, 0, 1);
+  const double centre = InCubes({2.5, 2.5, 2.5}).response(fluid, slip);
+  EXPECT_NEAR(InCubes({2.5, 2.5, 2}).response(fluid, slip) / centre, 1, 1e-12);
+  EXPECT_NEAR(InCubes({2, 2.5, 2.5}).response(fluid, slip) / centre, 0.5, 1e-12);
+  EXPECT_NEAR(InCubes({2, 2, 2}).response(fluid, slip) / centre, 0.25, 1e-12);
+  // Against the flow it is the same.
+  EXPECT_NEAR(InCubes({2.5, 2.5, 2}).response(fluid, -slip) / centre, 1, 1e-12);
+  // Viscosity: half of each cell's faces but one lead out of the two.
+  const FluidProperties oil{1.2, 1e14};
+  EXPECT_NEAR(
+      InCubes({2, 2.5, 2.5}).response(oil, slip) / InCubes({2.5, 2.5, 2.5}).response(oil, slip),
+      0.5 * 6 / 5, 1e-12);
+}
+
+TEST(OwnDisturbance, gives_the_drag_of_the_flow_without_it) {
+  for (const double viscosity : {1e-3, 0.3}) {
+    Pair pair(1000);
+    pair.settings.added_mass = false;
+    pair.settings.mobile = false;
+    pair.settings.drag.law = DragLaw::schiller_naumann;
+    pair.settings.fluid = {1.2, viscosity};
+    const OwnDisturbance own(pair.mesh);
+    pair.settings.own = &own;
+    pair.map();
+    const std::vector<Vector3> none{Vector3::Zero()}, stream{pair.velocity};
+    pair.offer_window(1e-3, {true, stream, none, {}, none});
+    const double seen = pair.velocity.norm();
+    const double force = pair.offer.coefficient[0] * seen;
+    const double slip = seen + force * own.response(pair.offer.weights, 0, pair.settings.fluid,
+                                                    pair.voidage, pair.velocity);
+    EXPECT_GT(slip, 1.001 * seen);
+    const double zeta = schiller_naumann_drag({pair.voidage[0], 0.1, slip}, pair.settings.fluid);
+    EXPECT_NEAR(force / (zeta * slip), 1, 1e-13) << viscosity;
+  }
+}
+
+TEST(OwnDisturbance, is_refused_where_it_hides_most_of_the_slip) {
+  Pair pair(1000);
+  pair.particles.radius[0] = 0.49;  // a sphere that fills its cell
+  measure_bulk(pair.particles, pair.bulk);
+  pair.settings.added_mass = false;
+  pair.settings.fluid = {1.2, 1e3};
+  const OwnDisturbance own(pair.mesh);
+  pair.settings.own = &own;
+  pair.map();
+  const std::vector<Vector3> none{Vector3::Zero()}, stream{pair.velocity};
+  EXPECT_THROW(pair.offer_window(1e-3, {true, stream, none, {}, none}), NumericsError);
+}
+
 /// A uniform suspension through which a given flux goes: one sphere in one cell where u = 0, and ∇p
 /// is what that takes. Returns the largest |v| over 400 windows, from v = 1.
-double largest_speed(double solids, double over, double ratio, bool eliminated) {
+double largest_speed(double solids, double over, double ratio, bool eliminated,
+                     bool added_mass = true) {
   Pair pair(ratio);
+  pair.settings.added_mass = added_mass;
   pair.particles.radius[0] = std::cbrt(0.75 * solids / std::numbers::pi);  // in 1 m³
   measure_bulk(pair.particles, pair.bulk);
   pair.particles.velocity[0] = {1, 0, 0};
@@ -293,6 +399,20 @@ double largest_speed(double solids, double over, double ratio, bool eliminated) 
     largest = std::max(largest, pair.particles.velocity[0].norm());
   }
   return largest;
+}
+
+TEST(Drag, is_stable_beside_a_lagged_pressure_gradient_as_far_as_that_of_the_end_alone) {
+  // B (1 + 2 φ) < 2 ε with B = b/(1 + b).
+  for (const double solids : {0.1, 0.3, 0.4, 0.5}) {
+    const double room = 3 - 4 * (1 - solids);
+    const double limit = room > 0 ? 2 * (1 - solids) / room : 1e5;
+    for (const double over : {1e-3, 0.03, 0.1, 0.2, 0.3, 0.34, 0.5, 0.97 * limit}) {
+      EXPECT_LE(largest_speed(solids, over, 1000, false, false), 1) << solids << ' ' << over;
+    }
+    if (room > 0) {
+      EXPECT_GT(largest_speed(solids, 1.1 * limit, 1000, false, false), 10) << solids;
+    }
+  }
 }
 
 TEST(PressureReturn, solves_the_whole_equation_of_motion_with_the_gradient_of_the_answer) {

@@ -75,6 +75,17 @@ TEST(SceneDrag, tries_the_sign_of_a_formula_over_its_ranges) {
                  "diameter 0.002 m");
 }
 
+TEST(SceneDrag, corrects_the_self_disturbance_of_narrow_maps_only) {
+  const std::string key = "  drag: wen_yu\n  self_disturbance: corrected\n";
+  const Scene scene = read_scene(with_drag(key), "s.yaml");
+  EXPECT_EQ(scene.interphase.self_disturbance, SelfDisturbance::corrected);
+  EXPECT_EQ(read_scene(write_scene(scene), "w").interphase.self_disturbance,
+            SelfDisturbance::corrected);
+  expect_finding(with("  voidage: centroid\n  drag: wen_yu\n",
+                      "  voidage: {map: diffusion, width: 5 cm}\n" + key),
+                 "is for the maps exact, centroid and satellite");
+}
+
 TEST(DragFormula, of_a_momentum_exchange_is_shared_by_the_spheres) {
   // β of Wen and Yu, over the spheres of a volume, against the same law for one sphere.
   DragExpressionSettings settings;

@@ -10,7 +10,8 @@ TEST(SceneErrors, unknown_key_names_the_nearest_and_the_allowed_ones) {
   expect_error(with("  drag: wen_yu", "  drga: wen_yu"),
                "s.yaml:51:3: interphase.drga: unknown key",
                {"nearest: `drag`",
-                "allowed here: model, voidage, drag, syamlal_obrien, drag_expression, forces"});
+                "allowed here: model, voidage, drag, syamlal_obrien, drag_expression, "
+                "self_disturbance, forces"});
   expect_error(with("interphase:", "weather: fine\ninterphase:"),
                "s.yaml:49:1: weather: unknown key", {"launch"});
 }

@@ -240,12 +240,13 @@ void OfferMaker::make(const ExchangeSettings& settings, const FluidSeen& fluid,
   if (bad == count && hidden < count) {
     const Vector3& x = particles.position[hidden];
     throw NumericsError(
-        "interphase.self_disturbance: corrected: particle {} at ({}, {}, {}) m would not see more "
-        "than {} % of its slip for what it does itself to the fluid in its cells, and no "
-        "correction "
-        "holds there: it is for single particles in cells of five diameters and more; take larger "
-        "cells, or interphase.voidage kernel or diffusion with self_disturbance: none",
-        particles.id[hidden], x.x(), x.y(), x.z(), 100 * most_unseen);
+        "interphase.self_disturbance: corrected: particle {} at ({}, {}, {}) m, diameter {:.3g} m, "
+        "has cells of less than {} diameters, or would not see more than {} % of its slip for what "
+        "it does itself to the fluid in them, and no correction holds there: it is for single "
+        "particles in larger cells; take these, or interphase.voidage kernel or diffusion with "
+        "self_disturbance: none",
+        particles.id[hidden], x.x(), x.y(), x.z(), 2 * particles.radius[hidden], narrowest,
+        100 * most_unseen);
   }
   if (bad == count) return;
   const Vector3& x = particles.position[bad];
@@ -267,11 +268,13 @@ DragSurvey OfferMaker::find_drag(const ExchangeSettings& settings, const Rows& r
 }
 
 /// ζ of the slip without their own disturbance, for the slip with it. Returns the first of the rows
-/// of whose slip too much is not seen, or the number of all particles.
+/// whose cells are too small, or of whose slip too much is not seen, or the number of all
+/// particles.
 int OfferMaker::correct(const ExchangeSettings& settings, const FluidSeen& fluid,
                         std::span<const double> voidage, const ParticleState& particles,
                         const Prediction& past, const Rows& rows, Offer& offer) {
   for (int i = rows.first; i < rows.last; ++i) {
+    if (!settings.own->has_room(offer.weights, i, particles.radius[i])) return i;
     Vector3 seen =
         offer.weights.gather(i, fluid.velocity, no_vector) - velocity_of(particles, past, i);
     if (!offer.eddies.empty()) seen += lead_[i];

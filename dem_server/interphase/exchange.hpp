@@ -155,7 +155,8 @@ void window_forces(const ExchangeSettings& settings, const Offer& offer, const F
 /// Fills weights (already built), k and q of an offer for a coming window of `offer.window`.
 /// `voidage`: of the new positions, one a cell, as seen through the weights. Buffers inside are
 /// reused. Throws NumericsError naming the particle if its drag coefficient is negative or not
-/// finite, or if more than half of its slip is its own disturbance.
+/// finite, or if its own disturbance is to be corrected where no correction holds
+/// (own_disturbance.hpp).
 class OfferMaker {
  public:
   /// first .. last − 1 of the particles.

@@ -58,4 +58,13 @@ double OwnDisturbance::response(const ParticleCellWeights& weights, int particle
   return lost > 0 ? without_divergence * seen * seen / lost : 0;
 }
 
+bool OwnDisturbance::has_room(const ParticleCellWeights& weights, int particle,
+                              double radius) const {
+  const double edge = 2 * radius * narrowest * (1 - 1e-9);  // cells of just that size, rounded
+  for (auto k = weights.row_offsets[particle]; k < weights.row_offsets[particle + 1]; ++k) {
+    if (volumes_[weights.row_cells[k]] < edge * edge * edge) return false;
+  }
+  return true;
+}
+
 }  // namespace fluxpact

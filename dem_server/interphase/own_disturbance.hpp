@@ -39,6 +39,11 @@ class OwnDisturbance {
   double response(const ParticleCellWeights& weights, int particle, const FluidProperties& fluid,
                   std::span<const double> voidage, const Vector3& slip) const;
 
+  /// Whether all cells of the particle's row hold the cube of `narrowest` of its diameters. In
+  /// smaller ones the gas that it squeezes aside is as much of what it sees as the gas that it
+  /// drags along, and G knows of the second alone.
+  bool has_room(const ParticleCellWeights& weights, int particle, double radius) const;
+
  private:
   struct CellFace {
     int beyond = -1;         ///< -1: a boundary
@@ -55,6 +60,9 @@ struct Undisturbed {
   double drag = 0;   ///< ζ(s) [kg/s]
   double share = 0;  ///< ζ G [-] of s that is not seen
 };
+
+/// The edge of the smallest cubes in which it holds, in diameters (docs/theory.md, section 3).
+constexpr double narrowest = 5;
 
 /// More of the slip unseen than this, and a cell is not what it is taken for here.
 constexpr double most_unseen = 0.5;

@@ -356,17 +356,34 @@ TEST(OwnDisturbance, gives_the_drag_of_the_flow_without_it) {
   }
 }
 
-TEST(OwnDisturbance, is_refused_where_it_hides_most_of_the_slip) {
+/// Whether the offer of a sphere of that radius, in cells of 1 m of that voidage, is made.
+bool is_corrected(double radius, double voidage) {
   Pair pair(1000);
-  pair.particles.radius[0] = 0.49;  // a sphere that fills its cell
+  pair.particles.radius[0] = radius;
   measure_bulk(pair.particles, pair.bulk);
   pair.settings.added_mass = false;
+  pair.settings.drag.law = DragLaw::wen_yu;
   pair.settings.fluid = {1.2, 1e3};
   const OwnDisturbance own(pair.mesh);
   pair.settings.own = &own;
   pair.map();
+  pair.voidage[0] = voidage;
   const std::vector<Vector3> none{Vector3::Zero()}, stream{pair.velocity};
-  EXPECT_THROW(pair.offer_window(1e-3, {true, stream, none, {}, none}), NumericsError);
+  try {
+    pair.offer_window(1e-3, {true, stream, none, {}, none});
+    return true;
+  } catch (const NumericsError& error) {
+    EXPECT_NE(std::string(error.what()).find("self_disturbance: corrected: particle 1 at"),
+              std::string::npos)
+        << error.what();
+    return false;
+  }
+}
+
+TEST(OwnDisturbance, is_refused_in_small_cells_and_where_it_hides_most_of_the_slip) {
+  EXPECT_TRUE(is_corrected(0.1, 1));     // cells of 5 d; it hides 21 % of the slip
+  EXPECT_FALSE(is_corrected(0.11, 1));   // of 4.5 d
+  EXPECT_FALSE(is_corrected(0.1, 0.5));  // ε^-3.65 times the drag
 }
 
 /// A uniform suspension through which a given flux goes: one sphere in one cell where u = 0, and ∇p

@@ -16,7 +16,7 @@ std::filesystem::path on_the_path(const std::string& program) {
   std::string folders = path != nullptr ? path : "";
   for (std::size_t begin = 0; begin <= folders.size();) {
     const std::size_t end = std::min(folders.find(':', begin), folders.size());
-    const std::filesystem::path found =
+    std::filesystem::path found =
         std::filesystem::path(folders.substr(begin, end - begin)) / program;
     if (end > begin && access(found.c_str(), X_OK) == 0) return found;
     begin = end + 1;

@@ -53,7 +53,7 @@ std::FILE* open_log_stream(std::string name) {
   std::FILE* const stream =
       fopencookie(lines.get(), "w", {nullptr, write_lines, nullptr, close_lines});
   if (stream == nullptr) throw SystemError("no memory for the stream of an engine's messages");
-  lines.release();  // close_lines takes it back
+  static_cast<void>(lines.release());  // close_lines takes it back
   setvbuf(stream, nullptr, _IOLBF, BUFSIZ);
   return stream;
 }

@@ -172,6 +172,7 @@ void LiggghtsSimulation::take_up(const ParticleState& spheres, const Motions& mo
     const std::span<const double> contacts = contacts_of(motions, row);
     if (contacts.empty()) continue;  // it touches nothing
     const double* next = contacts.data() + contacts.size();
+    // NOLINTNEXTLINE(modernize-loop-convert): clang 14 has no std::views
     for (auto wall = walls.rbegin(); wall != walls.rend(); ++wall) {
       next -= spring_numbers;
       std::copy_n(next, spring_numbers, (*wall)->array_atom[i]);
@@ -183,11 +184,11 @@ void LiggghtsSimulation::take_up(const ParticleState& spheres, const Motions& mo
     const std::span<const double> contacts = contacts_of(motions, row);
     const int partners = contacts.empty() ? 0 : static_cast<int>(contacts[0]);
     for (int p = 0; p < partners; ++p) {
-      const double* const contact = contacts.data() + 1 + p * (1 + spring_numbers);
+      const double* const contact = contacts.data() + 1 + std::ptrdiff_t{p} * (1 + spring_numbers);
       for (int n = 0; n < list.numneigh[i]; ++n) {
         if (atom.tag[list.firstneigh[i][n] & NEIGHMASK] != static_cast<int>(contact[0])) continue;
         std::copy_n(contact + 1, spring_numbers,
-                    list.listgranhistory->firstdouble[i] + n * spring_numbers);
+                    list.listgranhistory->firstdouble[i] + std::ptrdiff_t{n} * spring_numbers);
       }
     }
   }

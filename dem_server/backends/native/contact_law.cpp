@@ -262,7 +262,7 @@ LawTable<T> law_table(const ContactLaws& laws) {
     table.one_law = table.one_law && std::equal(std::begin(law.column), std::end(law.column),
                                                 std::begin(laws[table.any].column));
     for (int column = 0; column < law_columns; ++column) {
-      table.values[static_cast<std::size_t>(column * laws.count() + pair)] =
+      table.values[static_cast<std::size_t>(column) * laws.count() + pair] =
           static_cast<T>(law.column[column]);
     }
   }

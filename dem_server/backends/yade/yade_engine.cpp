@@ -311,8 +311,8 @@ void YadeEngine::store(EngineState& state) const {
   std::vector<double>& one = state.add_scalars("contact_one");
   std::vector<double>& other = state.add_scalars("contact_other");
   for (int contact = 0; contact < kept.size(); ++contact) {
-    one.push_back(kept.pair[2 * contact]);
-    other.push_back(kept.pair[2 * contact + 1]);
+    one.push_back(kept.pair[std::size_t{2} * contact]);
+    other.push_back(kept.pair[std::size_t{2} * contact + 1]);
   }
   state.add_vectors("contact_shear_force") = kept.shear_force;
   state.add_vectors("contact_normal") = kept.normal;

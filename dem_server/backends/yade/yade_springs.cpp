@@ -31,10 +31,10 @@ YadeMaterials yade_materials(const ContactLaws& laws, const YadeSpheres& spheres
   const int kinds = laws.walls() + 2;
   const PairLaw& own = laws[laws.index(free, free)];
   YadeMaterials materials;
-  materials.friction_angle.assign(static_cast<std::size_t>(kinds * kinds), 0.0);
+  materials.friction_angle.assign(static_cast<std::size_t>(kinds) * kinds, 0.0);
   const auto set_friction = [&](int kind, double friction) {
     materials.friction_angle[static_cast<std::size_t>(kind)] =
-        materials.friction_angle[static_cast<std::size_t>(kind * kinds)] = std::atan(friction);
+        materials.friction_angle[static_cast<std::size_t>(kind) * kinds] = std::atan(friction);
   };
   const auto add = [&](double kn, double ks, double cn, double cs) {
     materials.kn.push_back(kn);

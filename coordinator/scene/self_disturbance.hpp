@@ -29,9 +29,9 @@ double terminal_reynolds(const FluidSettings& fluid, double gravity, double diam
 
 /// One text if particles that are few (less than 1 % of their region and four cells around it)
 /// would see more than 1 % too little of their slip, for the entry of particles.insertion with the
-/// most. None without gravity, and for entries of type file or
-/// settled to a height, whose numbers are not known yet.
-/// With self_disturbance: corrected one if there are entries whose particles are not few.
+/// most. None without gravity, and for entries of type file or settled to a height, whose numbers
+/// are not known yet. With self_disturbance: corrected one if there are entries whose particles are
+/// not few.
 std::vector<std::string> self_disturbance_warnings(const Scene& scene, const Mesh& mesh);
 
 }  // namespace fluxpact

@@ -85,7 +85,8 @@ def run(build, scene, engine, out, overrides):
 
 
 def measure(out, begin):
-    """What the run tells: settled height [m], drop over weight per area [-], height [m], rms speed in the second half [m/s], imbalance [-], particle side [s]."""
+    """What the run tells: settled height [m], drop over weight per area [-], height [m], rms speed in the second half [m/s], imbalance [-],
+    particle side [s]."""
     with h5py.File(out / "results.h5") as results:
         particles = results["particles"]
         records = sorted(particles, key=int)

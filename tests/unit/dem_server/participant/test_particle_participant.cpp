@@ -52,6 +52,22 @@ TEST(ParticleParticipant, starts_with_the_drag_of_the_velocity_it_is_given) {
   EXPECT_NE(first.at(field::drag_coefficient), second.at(field::drag_coefficient));
 }
 
+/// Velocity of one sphere of `radius` [m] and `density` [kg/m³] after `windows` in the bench's
+/// flow.
+Vector3 velocity_after(Bench& bench, int windows, double radius, double density) {
+  const auto side = bench.take_part(one_sphere({0.15, 0.15, 0.15}, radius, density));
+  Fields begin;
+  side->start({}, begin);
+  for (int step = 1; step <= windows; ++step) {
+    Fields out;
+    side->advance(bench.window(step), bench.fluid(), out, quiet);
+    side->commit();
+  }
+  Fields end;
+  side->snapshot(end);
+  return end.vectors("velocity", 1)[0];
+}
+
 TEST(ParticleParticipant, settles_to_the_exact_terminal_slip_at_any_window) {
   const double radius = 1e-3;
   const double density = 500;
@@ -62,19 +78,10 @@ TEST(ParticleParticipant, settles_to_the_exact_terminal_slip_at_any_window) {
     // Stokes: τ = m/(3 π μ d) = ρ_p d²/(18 μ).
     bench.scene.fluid.viscosity = density * 4 * radius * radius / (18 * tau);
     std::ranges::fill(bench.velocity, Vector3(0.3, 0, 0.1));
-    const auto side = bench.take_part(one_sphere({0.15, 0.15, 0.15}, radius, density));
-    Fields begin;
-    side->start({}, begin);
-    // The distance to the terminal velocity falls by 1/(1 + b) a window: to 1e-16 in 37 (1 + b)/b.
+    // The distance to the terminal velocity falls by 1/(1 + b) a window, or more (θ below 1): to
+    // 1e-16 in 37 (1 + b)/b.
     const int windows = 10 + static_cast<int>(40 * (1 + ratio) / ratio);
-    for (int step = 1; step <= windows; ++step) {
-      Fields out;
-      side->advance(bench.window(step), bench.fluid(), out, quiet);
-      side->commit();
-    }
-    Fields end;
-    side->snapshot(end);
-    const Vector3 slip = Vector3(0.3, 0, 0.1) - end.vectors("velocity", 1)[0];
+    const Vector3 slip = Vector3(0.3, 0, 0.1) - velocity_after(bench, windows, radius, density);
     // Velocities of 0.3 and aτ are subtracted; each window rounds v, damped by 1/(1 + b).
     const double tolerance = 1e-15 * (0.3 + reduced * tau) * (1 + 1 / ratio) * 4;
     EXPECT_NEAR(slip.z(), reduced * tau, tolerance) << "window/tau " << ratio;
@@ -93,17 +100,7 @@ TEST(ParticleParticipant, is_slowed_down_by_a_given_flow_to_second_order_in_the_
     bench.scene.fluid.viscosity =
         500 * 4 * radius * radius * b / (18 * bench.scene.coupling.window);
     std::ranges::fill(bench.velocity, Vector3(0.3, 0, 0.1));
-    const auto side = bench.take_part(one_sphere({0.15, 0.15, 0.15}, radius, 500));
-    Fields begin;
-    side->start({}, begin);
-    for (int step = 1; step <= windows; ++step) {
-      Fields out;
-      side->advance(bench.window(step), bench.fluid(), out, quiet);
-      side->commit();
-    }
-    Fields end;
-    side->snapshot(end);
-    errors.push_back(1 - end.vectors("velocity", 1)[0].x() / 0.3 - std::exp(-1));
+    errors.push_back(1 - velocity_after(bench, windows, radius, 500).x() / 0.3 - std::exp(-1));
   }
   // With the weight 1/2 + 3/2 b of the end, b²(17/12) e^−1 is left; of all of the end, b/2 e^−1.
   EXPECT_NEAR(errors[2] * 80 * 80 / std::exp(-1), 17.0 / 12, 0.1);

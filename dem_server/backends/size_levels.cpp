@@ -5,8 +5,9 @@
 
 namespace fluxpact {
 
-void SizeLevels::sort_level(const Domain& domain, PositionRows positions, Level& level) {
-  const double cutoff = 2 * level.largest_radius + skin_;
+void SizeLevels::sort_level(const Domain& domain, double skin, PositionRows positions,
+                            Level& level) {
+  const double cutoff = 2 * level.largest_radius + skin;
   level.first = static_cast<int>(order_.size());
   if (levels_.size() == 1) {
     level.grid.sort(domain, cutoff, positions);
@@ -22,7 +23,6 @@ void SizeLevels::sort_level(const Domain& domain, PositionRows positions, Level&
 }
 
 void SizeLevels::sort(const Domain& domain, double skin, PositionRows positions, RadiusRows radii) {
-  skin_ = skin;
   double largest = 0;
   double smallest = std::numeric_limits<double>::infinity();
   for (int row = 0; row < positions.size; ++row) {
@@ -42,7 +42,7 @@ void SizeLevels::sort(const Domain& domain, double skin, PositionRows positions,
   }
   order_.clear();
   if (levels_.size() > 1) order_.reserve(positions.size);
-  for (Level& level : levels_) sort_level(domain, positions, level);
+  for (Level& level : levels_) sort_level(domain, skin, positions, level);
 }
 
 }  // namespace fluxpact

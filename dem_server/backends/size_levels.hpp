@@ -30,12 +30,11 @@ class SizeLevels {
   }
 
   /// Calls visit(first, last, shift) with ranges of places [first, last) that hold every sphere
-  /// whose surface, moved by the shift, may be nearer than the skin to that of this one; the sphere
-  /// itself among them.
+  /// whose surface, moved by the shift, may be nearer than `reach` [m] to this position.
   template <class Visit>
-  void visit_near(const double* position, double radius, const Visit& visit) const {
+  void visit_near(const double* position, double reach, const Visit& visit) const {
     for (const Level& level : levels_) {
-      level.grid.visit_near(position, radius + level.largest_radius + skin_,
+      level.grid.visit_near(position, reach + level.largest_radius,
                             [&](int first, int last, int shift) {
                               visit(level.first + first, level.first + last, shift);
                             });
@@ -50,9 +49,8 @@ class SizeLevels {
     std::vector<Vector3> positions;  // of its rows; unused if there is one level
     CellGrid grid;
   };
-  void sort_level(const Domain& domain, PositionRows positions, Level& level);
+  void sort_level(const Domain& domain, double skin, PositionRows positions, Level& level);
 
-  double skin_ = 0;
   std::vector<Level> levels_;
   std::vector<int> order_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fluxpact {
 namespace {
@@ -18,10 +19,10 @@ struct Sources {
   const Resorting& resorting;
   const ContactList<Real>* before;
   const std::vector<BlockSprings<Real>>& springs;  // of the list before
+  const std::vector<float>& slack;                 // [m] of each particle
   std::array<Vector3, 27> shifts;
   SpringNumbers numbers;  // of each pair
   int spring_rows;        // of each contact with a wall
-  double reach;           // [m] between surfaces, within which a pair is listed
 
   int law(const ContactList<Real>& list, int i, int other_material) const {
     return scope.laws.index(material_of_row[list.row[i]], other_material);
@@ -91,18 +92,17 @@ Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int 
 /// Springs of the pairs of a new list; `first` and `base` turn its places into those of all
 /// particles.
 template <class Real, bool turning>
-void carry_springs(const Sources<Real, turning>& from, const std::vector<Pair>& pairs, int first,
-                   int base, typename ListMaking<Real>::Found& found, ClosePairs<Real>& close) {
+void carry_springs(const Sources<Real, turning>& from, const FoundPairs& pairs, int first, int base,
+                   typename ListMaking<Real>::Found& found, ClosePairs<Real>& close) {
   PairSprings<Real>& springs = found.springs;
-  const int count = static_cast<int>(pairs.size());
-  springs.reset(count, from.numbers, 0);
-  for (int contact = 0; contact < count; ++contact) {
+  springs.reset(static_cast<int>(pairs.listed.size()), from.numbers, 0);
+  for (const std::int32_t contact : pairs.touching) {
     if (from.before == nullptr || from.numbers.count == 0) break;
-    const Pair& pair = pairs[contact];
+    const Pair& pair = pairs.listed[contact];
     const Held<Real> held = former_springs(from, first + pair.mine, base + pair.other, pair.shift);
     if (held.numbers != nullptr) springs.append(contact, held.numbers, 1, held.mirrored);
   }
-  close.bring_back(pairs, springs, found.places);
+  close.bring_back(pairs.listed, springs, found.places);
 }
 
 template <class Real, bool turning>
@@ -115,25 +115,29 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
   found.image.clear();
   for (int i = first; i < last; ++i) {
     const Body<Real, turning>& a = from.spheres[i];
-    const double reach = a.radius + from.reach;
+    const double touch = a.radius + from.scope.beyond_contact;
+    const double reach = touch + static_cast<double>(from.slack[i]);
     const bool fixed = a.inverse_mass == 0;
-    const auto add = [&](int begin, int end, int shift, std::vector<Pair>& pairs, int base) {
+    const auto add = [&](int begin, int end, int shift, FoundPairs& pairs, int base) {
       const Vector3& image = from.shifts[shift];
       for (int j = begin; j < end; ++j) {
         const Body<Real, turning>& b = from.spheres[j];
         const double x = a.position[0] - b.position[0] - image[0];
         const double y = a.position[1] - b.position[1] - image[1];
         const double z = a.position[2] - b.position[2] - image[2];
-        const double sum = reach + b.radius;
+        const double sum = reach + b.radius + static_cast<double>(from.slack[j]);
         const double square = x * x + y * y + z * z;
         if (square >= sum * sum || j == i) continue;
         if (fixed && b.inverse_mass == 0) continue;  // neither would move
         const int law = from.law(list, i, from.material_of_row[list.row[j]]);
-        pairs.push_back({j - base, static_cast<std::uint16_t>(i - first),
-                         static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
+        if (square < 1.000001 * (touch + b.radius) * (touch + b.radius)) {
+          pairs.touching.push_back(static_cast<std::int32_t>(pairs.listed.size()));
+        }
+        pairs.listed.push_back({j - base, static_cast<std::uint16_t>(i - first),
+                                static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
       }
     };
-    from.levels.visit_near(a.position, a.radius, [&](int begin, int end, int shift) {
+    from.levels.visit_near(a.position, reach + list.reach, [&](int begin, int end, int shift) {
       if (shift != Shift::none) {
         add(begin, end, shift, found.image, 0);
         return;
@@ -143,12 +147,12 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
       add(std::max(begin, last), end, shift, found.outer, 0);
     });
   }
-  assign_with_room(found.inner, block.inner);
-  assign_with_room(found.outer, block.outer);
-  assign_with_room(found.image, block.image);
-  carry_springs(from, block.inner, first, first, found, block.inner_close);
-  carry_springs(from, block.outer, first, 0, found, block.outer_close);
-  carry_springs(from, block.image, first, 0, found, block.image_close);
+  assign_with_room(found.inner.listed, block.inner);
+  assign_with_room(found.outer.listed, block.outer);
+  assign_with_room(found.image.listed, block.image);
+  carry_springs(from, found.inner, first, first, found, block.inner_close);
+  carry_springs(from, found.outer, first, 0, found, block.outer_close);
+  carry_springs(from, found.image, first, 0, found, block.image_close);
   block.budget.forget();
   find_partners(list.blocks, block);
 }
@@ -183,8 +187,8 @@ void find_planes(const Sources<Real, turning>& from, int index, const ContactLis
       if (domain.sides[side] != SideKind::wall) continue;
       const double inward = side % 2 == 0 ? 1.0 : -1.0;
       const double distance = inward * (body.position[side / 2] - domain.plane(side));
-      // The wall stands still, so half a skin is enough.
-      if (!(distance < body.radius + 0.5 * from.scope.skin + from.scope.beyond_contact)) continue;
+      const double slack = static_cast<double>(from.slack[i]);
+      if (!(distance < body.radius + slack + from.scope.beyond_contact)) continue;
       const int law = from.law(list, i, from.scope.laws.walls());
       block.planes.push_back({static_cast<std::uint16_t>(i - first),
                               static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(law)});
@@ -242,8 +246,11 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
     const Body<Real, turning>& body = from.spheres[i];
     if (body.inverse_mass == 0) continue;  // fixed: no wall moves it
     const std::size_t had = contacts.elements.size();
+    // A wall that moves has as much as the slowest particle.
+    const double reach = body.radius + from.scope.beyond_contact +
+                         static_cast<double>(from.slack[i]) + from.scope.slack.least;
     const bool held =
-        from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), body.radius + from.reach,
+        from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), reach,
                                 former_elements(from, i), contacts.elements);
     if (!held) contacts.lost = i - first;
     if (contacts.elements.size() == had) continue;
@@ -269,6 +276,26 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
   }
 }
 
+/// How far each particle may go; the farthest [m].
+template <class Real, bool turning>
+double grant_slack(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
+                   std::vector<float>& slack) {
+  const auto& [least, most, flight] = scope.slack;
+  const int count = static_cast<int>(spheres.size());
+  slack.resize(count);
+  float farthest = static_cast<float>(least);
+#pragma omp parallel for num_threads(scope.threads) schedule(static) reduction(max : farthest)
+  for (int i = 0; i < count; ++i) {
+    double square = 0;
+    for (const Real v : spheres[i].velocity) {
+      square += static_cast<double>(v) * static_cast<double>(v);
+    }
+    slack[i] = static_cast<float>(std::min(std::max(least, flight * std::sqrt(square)), most));
+    farthest = std::max(farthest, slack[i]);
+  }
+  return static_cast<double>(farthest);
+}
+
 /// Where the particles are now, and how far they may go.
 template <class Real, bool turning>
 void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
@@ -283,7 +310,6 @@ void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
   list.origin = 0.5 * (lower + upper);
   // Half an ulp of a float in each axis, relative to the farthest offset.
   const double rounding = 0.5 * (upper - lower).norm() * 6e-8;
-  list.reach = std::max(0.5 * from.scope.skin - rounding, 0.0);
   list.listed_at.resize(count);
 #pragma omp parallel for num_threads(from.scope.threads) schedule(static)
   for (int i = 0; i < count; ++i) {
@@ -291,8 +317,10 @@ void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
       list.listed_at[i].offset[axis] =
           static_cast<float>(from.spheres[i].position[axis] - list.origin[axis]);
     }
-    // In line with the radius, the last number of a row of positions.
-    list.listed_at[i].offset[3] = static_cast<float>(from.spheres[i].radius);
+    const double own = std::max(static_cast<double>(from.slack[i]) - rounding, 0.0);
+    const double rest = std::sqrt(list.reach * list.reach - own * own);
+    const auto nearest = static_cast<float>(from.spheres[i].radius + rest);
+    list.listed_at[i].offset[3] = std::nextafter(nearest, std::numeric_limits<float>::infinity());
   }
 }
 
@@ -322,12 +350,13 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                                     resorting,
                                     before,
                                     making.springs,
+                                    making.slack,
                                     shift_vectors(scope.domain),
                                     spring_numbers(scope.laws.model()),
-                                    spring_rows(scope.laws.model()),
-                                    scope.skin + scope.beyond_contact};
+                                    spring_rows(scope.laws.model())};
   list.block.resize(list.blocks.count());
   making.found.resize(scope.threads);
+  list.reach = grant_slack(scope, spheres, making.slack);
   mark_places(from, list);
   if (before != nullptr) {
     making.springs.resize(before->block.size());

@@ -1,6 +1,6 @@
-// Who may touch whom until a particle has moved by half a skin, with the springs of each contact in
-// place. Remade between two sub-steps when that has happened; springs of lasting contacts are
-// carried over.
+// Who may touch whom until a particle has moved farther than its slack, with the springs of each
+// contact in place. Remade between two sub-steps when that has happened; springs of lasting
+// contacts are carried over.
 #pragma once
 
 #include <array>
@@ -44,9 +44,19 @@ struct ContactBlock {
 };
 
 /// Where a particle was when the list was made: [m] from an origin. Float is enough, since the
-/// reach that is left to a particle allows for its rounding.
+/// reach that is left to a particle allows for its rounding. The last number stands in line with
+/// the radius in a row of positions and is the larger the less the particle may move: the square of
+/// the difference of the two rows is below that of the list's `reach` as long as it may.
 struct alignas(16) ListedAt {
   float offset[4];
+};
+
+/// How far a particle may move before the list is made anew: as it would in `flight` [s], but not
+/// less nor more than so much [m]. So a few fast ones make no new list for all.
+struct Slack {
+  double least = 0;
+  double most = 0;
+  double flight = 0;
 };
 
 /// The contact list and the order of the particles for which it holds.
@@ -57,7 +67,7 @@ struct ContactList {
   std::vector<int> row;     ///< of each place: row of the presented state, which is ascending by id
   double time = 0;          ///< [s] when it was made
   Vector3 origin{0, 0, 0};  ///< [m] of listed_at
-  double reach = 0;         ///< [m] that a particle may move before the list is remade
+  double reach = 0;         ///< [m] that the fastest may move before the list is remade
   HugeVector<ListedAt> listed_at;
 };
 
@@ -67,7 +77,7 @@ struct ContactScope {
   const Walls& walls;
   std::span<const int> surface_materials;
   const ContactLaws& laws;
-  double skin = 0;            ///< [m]
+  Slack slack;
   double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces
   int threads = 1;
 };
@@ -97,16 +107,27 @@ struct BlockSprings {
   }
 };
 
+struct FoundPairs {
+  std::vector<Pair> listed;
+  std::vector<std::int32_t> touching;  ///< places in `listed`: no others have springs
+
+  void clear() {
+    listed.clear();
+    touching.clear();
+  }
+};
+
 /// Room for the making of a list, kept so that it need not be found anew.
 template <class Real>
 struct ListMaking {
   struct Found {  // what a thread has just found, before it takes no more room than it needs
-    std::vector<Pair> inner, outer, image;
+    FoundPairs inner, outer, image;
     PairSprings<Real> springs;
     std::vector<std::int32_t> places;
   };
   std::vector<Found> found;                 // by thread
   std::vector<BlockSprings<Real>> springs;  // of each block of the list before
+  std::vector<float> slack;                 // [m] of each particle
 };
 
 /// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already.

@@ -38,7 +38,7 @@ struct Sizes {
   StepLimit limit;
   RootMasses root_masses;
   double largest_radius = 0;  // [m]
-  double skin = 0;            // [m]
+  Slack slack;
   double beyond_contact = 0;  // [m] that a law reaches beyond touching surfaces
 };
 

@@ -58,7 +58,7 @@ void SoftSpheres<Real, turning>::sort_and_list(const Places* places, bool carry_
   wrap();
   constexpr int stride = sizeof(BodyRow) / sizeof(double);
   const double* data = count > 0 ? bodies_.front().position : nullptr;
-  levels_.sort(domain_, sizes_.skin + sizes_.beyond_contact, {data, stride, count},
+  levels_.sort(domain_, 2 * sizes_.slack.least + sizes_.beyond_contact, {data, stride, count},
                {data + 3, stride});
   const std::vector<int>& order = levels_.order();
   sort_in_place(order, moved_, bodies_);
@@ -77,7 +77,7 @@ void SoftSpheres<Real, turning>::sort_and_list(const Places* places, bool carry_
     for (const int place : order) previous.push_back(places->previous[place]);
   }
   const ContactScope scope{
-      domain_, walls_, surface_materials_, laws_, sizes_.skin, sizes_.beyond_contact, threads_};
+      domain_, walls_, surface_materials_, laws_, sizes_.slack, sizes_.beyond_contact, threads_};
   make_contact_list<Real, turning>(scope, bodies_, presented_.material, levels_,
                                    {places != nullptr ? previous : order, periods_},
                                    carry_springs ? &before : nullptr, making_, list);

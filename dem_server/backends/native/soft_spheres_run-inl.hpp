@@ -7,7 +7,7 @@ namespace fluxpact {
 
 /// What close pairs have beyond their flight: few more pairs against going through lists more
 /// often.
-inline constexpr double usual_room_per_skin = 0.02;
+inline constexpr double usual_room_per_slack = 0.04;
 
 /// Drives in place of the forces of contacts; at the start of a window the state is `kept` first.
 template <class Real, bool turning>
@@ -54,7 +54,7 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.laws = &law_table_;
   all.beyond_contact = sizes_.beyond_contact;
   all.root_masses = sizes_.root_masses;
-  all.usual_room = usual_room_per_skin * sizes_.skin;
+  all.usual_room = usual_room_per_slack * sizes_.slack.least;
   const auto pass_of = [&](int thread, int b) {
     BlockPass<Real, turning> pass = all;
     pass.first = blocks.first(b);

@@ -6,9 +6,10 @@
 
 namespace fluxpact {
 
-/// List pairs per particle against rebuilds: 0.15 diameters is near the best from a bed at rest to
-/// one that bubbles.
-inline constexpr double skin_per_diameter = 0.15;
+/// List pairs per particle against rebuilds: near the best from a bed at rest to one that bubbles.
+inline constexpr double least_slack_per_diameter = 0.075;
+inline constexpr double most_slack_per_diameter = 0.3;
+inline constexpr int sub_steps_of_a_list = 30;
 
 /// Pairs of the list name their law by one byte.
 inline void check_law_indices(const ContactLaws& laws) {
@@ -125,7 +126,7 @@ void SoftSpheres<Real, turning>::check_inflow() const {
   check_time_step(limit, time_step_);
   const double largest = 2 * *std::ranges::max_element(all.radius);
   check_periods(domain_, largest,
-                largest * (1 + skin_per_diameter) + reach_beyond_contact(laws_, 0.5 * largest));
+                largest * (1 + 2 * least_slack_per_diameter) + reach_beyond_contact(laws_, 0.5 * largest));
 }
 
 template <class Real, bool turning>
@@ -134,13 +135,12 @@ void SoftSpheres<Real, turning>::place_walls(double time) {
   if (walls_.moving()) walls_.place(time);
 }
 
-/// True if a surface may have come near a particle that the list does not know of: the list covers
-/// a skin, of which each of the two has half.
+/// True if a surface may have come near a particle that the list does not know of.
 template <class Real, bool turning>
 bool SoftSpheres<Real, turning>::walls_moved_far() const {
-  return walls_.moving() &&
-         walls_.travelled(lists_[list_].time, sizes_.largest_radius + sizes_.skin) >
-             0.5 * sizes_.skin;
+  const Slack& slack = sizes_.slack;
+  const double reach = sizes_.largest_radius + slack.least + slack.most;
+  return walls_.moving() && walls_.travelled(lists_[list_].time, reach) > slack.least;
 }
 
 template <class Real, bool turning>
@@ -162,11 +162,19 @@ void SoftSpheres<Real, turning>::size_up() {
     mean += 2 * radius / presented_.size();
   }
   sizes_.largest_radius = 0.5 * largest;
-  sizes_.skin = skin_per_diameter * mean;
   sizes_.beyond_contact = reach_beyond_contact(laws_, 0.5 * largest);
   sizes_.root_masses = common_root_masses(presented_);
   sizes_.limit = step_limit(laws_, presented_, walls_present_);
-  check_periods(domain_, largest, largest + sizes_.skin + sizes_.beyond_contact);
+  Slack& slack = sizes_.slack;
+  slack.least = least_slack_per_diameter * mean;
+  slack.most = most_slack_per_diameter * mean;
+  slack.flight = sub_steps_of_a_list * time_step_;
+  check_periods(domain_, largest, largest + 2 * slack.least + sizes_.beyond_contact);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!domain_.periodic(axis)) continue;  // no farther than to the next image
+    const double free = domain_.length(axis) - largest - sizes_.beyond_contact;
+    slack.most = std::max(slack.least, std::min(slack.most, 0.5 * free));
+  }
   check_time_step(sizes_.limit, time_step_);
 }
 

@@ -9,7 +9,7 @@
 namespace fluxpact {
 
 /// Of the layout below.
-inline constexpr int native_state_version = 1;
+inline constexpr int native_state_version = 2;
 
 /// Below which the indices of a block stay.
 struct StateLimits {
@@ -189,7 +189,11 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
   state.add_vectors("listed_origin").push_back(list.origin);
   state.add_scalars("row").assign(list.row.begin(), list.row.end());
   std::vector<Vector3>& listed_at = state.add_vectors("listed_at");
-  for (const ListedAt& at : list.listed_at) listed_at.push_back(as_vector(at.offset));
+  std::vector<double>& listed_radius = state.add_scalars("listed_radius");
+  for (const ListedAt& at : list.listed_at) {
+    listed_at.push_back(as_vector(at.offset));
+    listed_radius.push_back(static_cast<double>(at.offset[3]));
+  }
 
   std::vector<Vector3>& position = state.add_vectors("body_position");
   std::vector<Vector3>& velocity = state.add_vectors("body_velocity");
@@ -316,6 +320,7 @@ auto SoftSpheres<Real, turning>::restored_list(const StateReader& state, int cou
     seen[row] = true;
   }
   const auto listed_at = state.vectors("listed_at", rows);
+  const auto listed_radius = state.scalars("listed_radius", rows);
   list.listed_at.resize(rows);
   list.block.resize(list.blocks.count());
   const auto limits = [&](std::size_t b) {
@@ -331,6 +336,7 @@ auto SoftSpheres<Real, turning>::restored_list(const StateReader& state, int cou
     for (int axis = 0; axis < 3; ++axis) {
       list.listed_at[i].offset[axis] = static_cast<float>(listed_at[i][axis]);
     }
+    list.listed_at[i].offset[3] = static_cast<float>(listed_radius[i]);
   }
   return list;
 }
@@ -369,7 +375,6 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
   loads_.assign(rows, LoadRow{});
   for (std::size_t i = 0; i < rows; ++i) {
     BodyRow& body = bodies_[i] = body_of(list.row[i]);
-    list.listed_at[i].offset[3] = static_cast<float>(body.radius);
     for (int axis = 0; axis < 3; ++axis) {
       body.position[axis] = position[i][axis];
       body.velocity[axis] = static_cast<Real>(velocity[i][axis]);

@@ -249,9 +249,8 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
     // A wall that moves has as much as the slowest particle.
     const double reach = body.radius + from.scope.beyond_contact +
                          static_cast<double>(from.slack[i]) + from.scope.slack.least;
-    const bool held =
-        from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), reach,
-                                former_elements(from, i), contacts.elements);
+    const bool held = from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), reach,
+                                              former_elements(from, i), contacts.elements);
     if (!held) contacts.lost = i - first;
     if (contacts.elements.size() == had) continue;
     contacts.near.push_back(static_cast<std::uint16_t>(i - first));

@@ -125,8 +125,9 @@ void SoftSpheres<Real, turning>::check_inflow() const {
   if (limit.longest < sizes_.limit.longest) limit.reason += ", once particles.inflow has begun";
   check_time_step(limit, time_step_);
   const double largest = 2 * *std::ranges::max_element(all.radius);
-  check_periods(domain_, largest,
-                largest * (1 + 2 * least_slack_per_diameter) + reach_beyond_contact(laws_, 0.5 * largest));
+  check_periods(
+      domain_, largest,
+      largest * (1 + 2 * least_slack_per_diameter) + reach_beyond_contact(laws_, 0.5 * largest));
 }
 
 template <class Real, bool turning>

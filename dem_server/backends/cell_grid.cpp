@@ -48,10 +48,16 @@ void CellGrid::lay_out(const Domain& domain, double cutoff, PositionRows positio
   }
 }
 
+int CellGrid::cell_of(const double* position) const {
+  int index = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    index += std::clamp(cell_along(axis, position[axis]), 0, cells_[axis] - 1) * strides_[axis];
+  }
+  return index;
+}
+
 void CellGrid::sort(const Domain& domain, double cutoff, PositionRows positions) {
   order_.resize(positions.size);
-  cell_of_place_.resize(positions.size);
-  cell_of_row_.resize(positions.size);
   if (positions.size == 0) return;
   lay_out(domain, cutoff, positions);
   // The axis with the fewest cells runs fastest, so that adjacent cells are near in memory.
@@ -63,22 +69,13 @@ void CellGrid::sort(const Domain& domain, double cutoff, PositionRows positions)
   strides_[axes_[1]] = cells_[axes_[0]];
   strides_[axes_[2]] = cells_[axes_[0]] * cells_[axes_[1]];
 
+  // Ends of the cells, which go back to the firsts as the cells are filled from behind. (A cell is
+  // found twice: to note it would take as much memory as the order.)
   first_.assign(static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2] + 1, 0);
-  for (int row = 0; row < positions.size; ++row) {
-    int index = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int cell = cell_along(axis, positions[row][axis]);
-      index += std::clamp(cell, 0, cells_[axis] - 1) * strides_[axis];
-    }
-    cell_of_row_[row] = index;
-    ++first_[index + 1];
-  }
+  for (int row = 0; row < positions.size; ++row) ++first_[cell_of(positions[row])];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  next_.assign(first_.begin(), first_.end());
-  for (int row = 0; row < positions.size; ++row) {
-    const int place = next_[cell_of_row_[row]]++;
-    order_[place] = row;
-    cell_of_place_[place] = cell_of_row_[row];
+  for (int row = positions.size - 1; row >= 0; --row) {
+    order_[--first_[cell_of(positions[row])]] = row;
   }
 }
 

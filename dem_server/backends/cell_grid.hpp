@@ -61,7 +61,9 @@ class CellGrid {
  private:
   using Cell = std::array<int, 3>;
   void lay_out(const Domain& domain, double cutoff, PositionRows positions);
-  /// Cell that holds a coordinate, as if the cells went on beyond their ends.
+  /// Cell that holds a position.
+  int cell_of(const double* position) const;
+  /// Cell along an axis that holds a coordinate, as if the cells went on beyond their ends.
   int cell_along(int axis, double coordinate) const;
   template <class Visit>
   void visit_cells(const Cell& from, const Cell& to, const Visit& visit) const;
@@ -74,9 +76,6 @@ class CellGrid {
   Vector3 cells_per_metre_;
   std::vector<int> first_;  // of each cell, into order_; one more at the end
   std::vector<int> order_;
-  std::vector<int> cell_of_place_;
-  std::vector<int> cell_of_row_;
-  std::vector<int> next_;
 };
 
 /// A cell index that may lie beyond the ends: the cell inside, and the periods between the two.
@@ -140,7 +139,8 @@ void CellGrid::visit_near(const double* position, double reach, const Visit& vis
 
 template <class Visit>
 void CellGrid::visit_partners(int place, const Visit& visit) const {
-  const int index = cell_of_place_[place];
+  const auto after = std::upper_bound(first_.begin(), first_.end(), place);
+  const int index = static_cast<int>(after - first_.begin()) - 1;
   Cell from{};
   Cell to{};
   for (int axis = 0; axis < 3; ++axis) {

@@ -7,8 +7,9 @@
 //
 // Beds and motion: bench_bed.hpp. Each case runs in a process of its own, so that its peak memory
 // is its own: what the kernel counts at most from just before the engine is made, less what was
-// resident then. 20 steps are not timed; then `repeats` times `steps`, in windows of 20. One line
-// a case, and one on the state at its end (compare_dem.py reads both).
+// resident then; pages of program files count in neither. 20 steps are not timed; then `repeats`
+// times `steps`, in windows of 20. One line a case, and one on the state at its end
+// (compare_dem.py reads both).
 #include <fmt/format.h>
 #include <hwy/targets.h>
 #include <sys/wait.h>
@@ -45,7 +46,8 @@ struct Options {
   int repeats = 5;
 };
 
-/// A line of the kernel's account of this process [B]: VmHWM (peak), VmRSS (now).
+/// A line of the kernel's account of this process [B]: VmHWM (peak), VmRSS (now), of the latter
+/// RssFile (pages of program files).
 double memory(const std::string& line) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -124,11 +126,11 @@ void run_case(const BenchBed& bed, int threads, Precision precision, const Optio
   const std::vector<Vector3> none(start.id.size(),
                                   Vector3::Zero());  // the caller's, not the engine's
   forget_peak_memory();
-  const double before = memory("VmRSS");
+  const double before = memory("VmRSS") - memory("RssFile");
   const auto engine = make_native_engine(scene, mesh, std::move(start));
   run_windows(*engine, none, bench_steps_per_window);
   const Rates rates = measure(*engine, none, options);
-  const double bytes = memory("VmHWM") - before;
+  const double bytes = memory("VmHWM") - memory("RssFile") - before;
   const EngineCounters counters = engine->counters();
   const double lists = static_cast<double>(std::max<std::int64_t>(1, counters.rebuilds));
   fmt::print(

@@ -18,8 +18,8 @@ struct Sources {
   const SizeLevels& levels;
   const Resorting& resorting;
   const ContactList<Real>* before;
-  const std::vector<BlockSprings<Real>>& springs;  // of the list before
-  const std::vector<float>& slack;                 // [m] of each particle
+  const FormerSprings<Real>& springs;
+  const std::vector<float>& slack;  // [m] of each particle
   std::array<Vector3, 27> shifts;
   SpringNumbers numbers;  // of each pair
   int spring_rows;        // of each contact with a wall
@@ -51,7 +51,7 @@ int find_pair(const std::vector<Pair>& pairs, int mine, int other, int shift) {
 }
 
 template <class Real>
-Held<Real> find_springs(const ContactList<Real>& list, const std::vector<BlockSprings<Real>>& all,
+Held<Real> find_springs(const ContactList<Real>& list, const FormerSprings<Real>& all,
                         const FormerPair& pair) {
   const int holder = list.blocks.holding(pair.i);
   const int first = list.blocks.first(holder);
@@ -337,6 +337,61 @@ void find_partners(const Blocks& blocks, ContactBlock<Real>& block) {
   }
 }
 
+template <class Real>
+void FormerSprings<Real>::plan(const ContactList<Real>& before, const Blocks& blocks,
+                               std::span<const int> previous) {
+  springs_.resize(before.blocks.count());
+  taken_.assign(springs_.size(), 0);
+  readers_.assign(springs_.size(), 0);
+  sources_.resize(blocks.count());
+  for (int b = 0; b < blocks.count(); ++b) {
+    std::vector<int>& sources = sources_[b];
+    sources.clear();
+    for (int i = blocks.first(b); i < blocks.last(b); ++i) {
+      if (previous[i] < 0) continue;
+      const int former = before.blocks.holding(previous[i]);
+      if (std::ranges::find(sources, former) != sources.end()) continue;
+      sources.push_back(former);
+      ++readers_[former];
+    }
+  }
+}
+
+template <class Real>
+void FormerSprings<Real>::take(int former, ContactList<Real>& before) {
+  if (taken_[former] != 0) return;
+  taken_[former] = 1;
+  BlockSprings<Real>& springs = springs_[former];
+  if (!free_.empty()) {
+    springs = std::move(free_.back());
+    free_.pop_back();
+  }
+  springs.take(before.block[former]);
+  springs.inner.number();
+  springs.outer.number();
+  springs.image.number();
+}
+
+template <class Real>
+void FormerSprings<Real>::fetch(int b, ContactList<Real>& before, ContactList<Real>& list) {
+#pragma omp critical(former_springs)
+  {
+    for (const int former : sources_[b]) take(former, before);
+    if (b < before.blocks.count()) {
+      if (readers_[b] > 0) take(b, before);
+      swap_close_pairs(before.block[b], list.block[b]);
+    }
+  }
+}
+
+template <class Real>
+void FormerSprings<Real>::release(int b) {
+#pragma omp critical(former_springs)
+  for (const int former : sources_[b]) {
+    if (--readers_[former] == 0) free_.push_back(std::move(springs_[former]));
+  }
+}
+
 template <class Real, bool turning>
 void make_contact_list(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                        const std::vector<int>& material, const SizeLevels& levels,
@@ -357,21 +412,12 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
   making.found.resize(scope.threads);
   list.reach = grant_slack(scope, spheres, making.slack);
   mark_places(from, list);
-  if (before != nullptr) {
-    making.springs.resize(before->block.size());
-#pragma omp parallel for num_threads(scope.threads) schedule(static)
-    for (int b = 0; b < before->blocks.count(); ++b) {
-      BlockSprings<Real>& springs = making.springs[b];
-      springs.take(before->block[b]);
-      springs.inner.number();
-      springs.outer.number();
-      springs.image.number();
-    }
-    swap_close_pairs(*before, list);
-  }
+  if (before != nullptr) making.springs.plan(*before, list.blocks, resorting.previous);
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
   for (int b = 0; b < list.blocks.count(); ++b) {
+    if (before != nullptr) making.springs.fetch(b, *before, list);
     find_pairs(from, b, list, making.found[omp_get_thread_num()], list.block[b]);
+    if (before != nullptr) making.springs.release(b);
     find_planes(from, b, list, list.block[b]);
     find_surfaces(from, b, list, list.block[b].surfaces);
   }

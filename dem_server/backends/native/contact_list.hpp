@@ -117,6 +117,31 @@ struct FoundPairs {
   }
 };
 
+/// The springs of the list before, while one is made. Particles go from block to block, but few of
+/// them, and into the next ones: so the springs of a block are taken when the first new block wants
+/// them, and their room given on after the last.
+template <class Real>
+class FormerSprings {
+ public:
+  /// `previous` as in Resorting.
+  void plan(const ContactList<Real>& before, const Blocks& blocks, std::span<const int> previous);
+  /// Call before and after the pairs of block b are found, from any thread: its room of close pairs
+  /// comes to it from the list before.
+  void fetch(int b, ContactList<Real>& before, ContactList<Real>& list);
+  void release(int b);
+  /// Of a block of the list before, from which a particle of a block came that is being made.
+  const BlockSprings<Real>& operator[](int former) const { return springs_[former]; }
+
+ private:
+  void take(int former, ContactList<Real>& before);
+
+  std::vector<BlockSprings<Real>> springs_;  // by block of the list before
+  std::vector<BlockSprings<Real>> free_;     // room that none of them has
+  std::vector<char> taken_;                  // by block of the list before
+  std::vector<int> readers_;                 // the same: new blocks that still want its springs
+  std::vector<std::vector<int>> sources_;    // by new block: where its particles were
+};
+
 /// Room for the making of a list, kept so that it need not be found anew.
 template <class Real>
 struct ListMaking {
@@ -125,9 +150,9 @@ struct ListMaking {
     PairSprings<Real> springs;
     std::vector<std::int32_t> places;
   };
-  std::vector<Found> found;                 // by thread
-  std::vector<BlockSprings<Real>> springs;  // of each block of the list before
-  std::vector<float> slack;                 // [m] of each particle
+  std::vector<Found> found;  // by thread
+  FormerSprings<Real> springs;
+  std::vector<float> slack;  // [m] of each particle
 };
 
 /// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already.
@@ -139,13 +164,17 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                        const Resorting& resorting, ContactList<Real>* before,
                        ListMaking<Real>& making, ContactList<Real>& list);
 
-/// The room of the close pairs of one list to another.
+/// The room of the close pairs of one block, or list, to another.
+template <class Real>
+void swap_close_pairs(ContactBlock<Real>& a, ContactBlock<Real>& b) {
+  std::swap(a.inner_close, b.inner_close);
+  std::swap(a.outer_close, b.outer_close);
+  std::swap(a.image_close, b.image_close);
+}
 template <class Real>
 void swap_close_pairs(ContactList<Real>& a, ContactList<Real>& b) {
   for (std::size_t k = 0; k < std::min(a.block.size(), b.block.size()); ++k) {
-    std::swap(a.block[k].inner_close, b.block[k].inner_close);
-    std::swap(a.block[k].outer_close, b.block[k].outer_close);
-    std::swap(a.block[k].image_close, b.block[k].image_close);
+    swap_close_pairs(a.block[k], b.block[k]);
   }
 }
 

@@ -44,35 +44,28 @@ HWY_INLINE auto to_real(hn::Vec<Positions> v) {
   }
 }
 
-/// How the surfaces of a batch stand to each other.
+/// How the surfaces of a batch stand to each other: normal and overlap, from the vector between the
+/// centres and the sum R of the radii. In float the overlap is (R² - d²)/(R + d) with the numerator
+/// in double, since the difference of two lengths would keep few digits.
 template <class Real>
-struct Gap {
-  using V = hn::Vec<Lanes<Real>>;
-  Lanes3<V> normal;
-  V overlap;  // [m]; negative where the surfaces are apart
-};
-
-/// From the vector between the centres and the sum R of the radii. In float the overlap is
-/// (R² - d²)/(R + d) with the numerator in double, since the difference of two lengths would keep
-/// few digits.
-template <class Real>
-HWY_INLINE Gap<Real> gap_between(const Quad<hn::Vec<Positions>>& apart) {
+HWY_INLINE void find_gap(const Quad<hn::Vec<Positions>>& apart,
+                         TouchLanes<hn::Vec<Lanes<Real>>>& touch) {
   const Lanes<Real> d;
   const auto radii = apart.d;
   const auto square =
       hn::MulAdd(apart.a, apart.a, hn::MulAdd(apart.b, apart.b, hn::Mul(apart.c, apart.c)));
   const auto distance = hn::Sqrt(to_real<Real>(square));
   const auto inverse = hn::Div(hn::Set(d, 1), distance);
-  Gap<Real> gap;
   if constexpr (sizeof(Real) == sizeof(double)) {
-    gap.overlap = hn::Sub(radii, distance);
+    touch.overlap = hn::Sub(radii, distance);
   } else {
     const auto difference = to_real<Real>(hn::MulSub(radii, radii, square));
-    gap.overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
+    touch.overlap = hn::Div(difference, hn::Add(to_real<Real>(radii), distance));
   }
-  gap.normal = {hn::Mul(to_real<Real>(apart.a), inverse), hn::Mul(to_real<Real>(apart.b), inverse),
-                hn::Mul(to_real<Real>(apart.c), inverse)};
-  return gap;
+  // (Number by number: a copy of all three would go through memory by halves.)
+  touch.normal.x = hn::Mul(to_real<Real>(apart.a), inverse);
+  touch.normal.y = hn::Mul(to_real<Real>(apart.b), inverse);
+  touch.normal.z = hn::Mul(to_real<Real>(apart.c), inverse);
 }
 
 /// The law of each lane, by index_of(lane).

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fluxpact::HWY_NAMESPACE {
 
 /// Partners are fetched this many pairs ahead: their rows lie anywhere in the block, or beyond it.
-inline constexpr int fetch_ahead = 128;
+inline constexpr int fetch_ahead = width == 8 ? 128 : 32;
 
 /// Which of the pairs of a block: inner ones act on both partners, the others on the holder only.
 enum class Kind { inner, outer, image };
@@ -223,10 +223,8 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const 
   const Positions dp;
   const auto reach = hn::Add(relative.apart.d, hn::Set(dp, pass.beyond_contact));
   batch.near = bits_of(hn::Lt(square_of(relative.apart), hn::Mul(reach, reach)), batch.count);
-  const Gap<Real> gap = gap_between<Real>(relative.apart);
   auto& touch = batch.touch;
-  touch.normal = gap.normal;
-  touch.overlap = gap.overlap;
+  find_gap<Real>(relative.apart, touch);
   add_motion(partners, relative.velocity, touch);
   if constexpr (!plain) {
     touch.root_mass = root_mass<Real>(pass.root_masses.pair, relative.velocity.d);
@@ -335,7 +333,8 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const std::vect
       const int ahead = std::min(at + fetch_ahead, ahead_most);
       const std::int32_t* later = close.batch(ahead / batch_size).other + ahead % batch_size;
       fetch(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
-      if constexpr (kind == Kind::inner) {
+      // (With fewer lanes the instructions cost more than the fetching gains.)
+      if constexpr (kind == Kind::inner && width == 8) {
         for (int k = 0; k < width; ++k) hwy::Prefetch(pass.sum + later[k]);
       }
     }

@@ -136,10 +136,15 @@ HWY_INLINE Quad<V> transpose(D d, const Quad<V>& rows) {
     const V ab_odd = hn::InterleaveUpper(d, rows.a, rows.b);   // a1 b1 | a3 b3
     const V cd_even = hn::InterleaveLower(d, rows.c, rows.d);
     const V cd_odd = hn::InterleaveUpper(d, rows.c, rows.d);
-    return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(cd_even), ab_even),
-            hn::OddEvenBlocks(hn::SwapAdjacentBlocks(cd_odd), ab_odd),
-            hn::OddEvenBlocks(cd_even, hn::SwapAdjacentBlocks(ab_even)),
-            hn::OddEvenBlocks(cd_odd, hn::SwapAdjacentBlocks(ab_odd))};
+    if constexpr (lanes_of<D> == 4) {
+      return {hn::ConcatLowerLower(d, cd_even, ab_even), hn::ConcatLowerLower(d, cd_odd, ab_odd),
+              hn::ConcatUpperUpper(d, cd_even, ab_even), hn::ConcatUpperUpper(d, cd_odd, ab_odd)};
+    } else {
+      return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(cd_even), ab_even),
+              hn::OddEvenBlocks(hn::SwapAdjacentBlocks(cd_odd), ab_odd),
+              hn::OddEvenBlocks(cd_even, hn::SwapAdjacentBlocks(ab_even)),
+              hn::OddEvenBlocks(cd_odd, hn::SwapAdjacentBlocks(ab_odd))};
+    }
   } else {
     const hn::RepartitionToWide<D> wide;
     const auto ab_low = hn::BitCast(wide, hn::InterleaveLower(d, rows.a, rows.b));  // a0 b0 a1 b1

@@ -28,8 +28,8 @@ lint: packages
 	./tests/tools/check_format.sh
 
 tidy: test_packages
-	cmake --preset release
-	./tests/tools/check_tidy.sh build/release
+	cmake --preset tidy
+	./tests/tools/check_tidy.sh build/tidy
 
 packages:
 	@./tests/tools/install_packages.sh build

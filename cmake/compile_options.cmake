@@ -10,6 +10,8 @@ target_compile_options(fluxpact_options INTERFACE
   "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Werror>"
   # False alarms on std::string in g++ 12 (GCC bug 105651).
   "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>")
+# Everywhere, not only where a pragma stands: a precompiled header serves only sources that are compiled with the same options.
+target_link_libraries(fluxpact_options INTERFACE OpenMP::OpenMP_CXX)
 if(FLUXPACT_SANITIZE)
   # The preset runs the tests with ASAN_OPTIONS=intercept_tls_get_addr=0: up to GCC 13 the interceptor
   # takes some thread-local blocks for what they are not, and now and then the search for leaks dies

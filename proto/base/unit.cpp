@@ -120,7 +120,7 @@ std::string unit_text(const Unit& unit) {
   put("kg", unit.kg);
   put("m", unit.m);
   put("s", unit.s);
-  if (above.empty()) above = "1";
+  if (above.empty()) above += '1';
   if (below.empty()) return above;
   return factors_below > 1 ? fmt::format("{}/({})", above, below)
                            : fmt::format("{}/{}", above, below);

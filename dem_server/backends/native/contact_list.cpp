@@ -130,6 +130,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
         if (square >= sum * sum || j == i) continue;
         if (fixed && b.inverse_mass == 0) continue;  // neither would move
         const int law = from.law(list, i, from.material_of_row[list.row[j]]);
+        // (The millionth is for the rounding of positions.)
         if (square < 1.000001 * (touch + b.radius) * (touch + b.radius)) {
           pairs.touching.push_back(static_cast<std::int32_t>(pairs.listed.size()));
         }

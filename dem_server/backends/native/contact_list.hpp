@@ -107,6 +107,7 @@ struct BlockSprings {
   }
 };
 
+/// Pairs of one kind, as they are found.
 struct FoundPairs {
   std::vector<Pair> listed;
   std::vector<std::int32_t> touching;  ///< places in `listed`: no others have springs

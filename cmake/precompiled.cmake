@@ -1,4 +1,5 @@
 # Reading Eigen and GoogleTest takes as long as compiling most of our sources: it is done once for all of them.
+# A source must include what it uses all the same: `make tidy` reads it without them, and so does who builds with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON (as with ccache).
 # fluxpact_precompiled(NAME HEADERS ... LIBRARIES ...): a precompiled header. Who shares it is compiled with the same options,
 # and with all definitions of the LIBRARIES, of which there should be few; more definitions do no harm.
 function(fluxpact_precompiled name)

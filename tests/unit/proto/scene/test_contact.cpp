@@ -1,4 +1,6 @@
 // The contact laws: which keys go with which.
+#include <fmt/format.h>
+
 #include "tests/unit/proto/scene/scene_text.hpp"
 
 namespace fluxpact {
@@ -27,7 +29,7 @@ const std::string wet = ", liquid_volume: 0.01 mm3, surface_tension: 0.072, cont
 /// `fragments` in its line.
 void expect_line(const std::string& text, const std::string& start,
                  const std::vector<std::string>& fragments) {
-  const std::string errors = "\n" + errors_in(text);
+  const std::string errors = fmt::format("\n{}", errors_in(text));
   const std::size_t at = errors.find((start.starts_with("s.yaml") ? "\n" : ": ") + start);
   ASSERT_NE(at, std::string::npos) << "no `" << start << "` in:" << errors;
   const std::string line = errors.substr(at + 1, errors.find('\n', at + 1) - at - 1);

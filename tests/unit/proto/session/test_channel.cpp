@@ -1,5 +1,6 @@
 // Messages over a real socket: alignment, order, foreign bytes, size limits, peers that are not
 // there.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -22,7 +23,7 @@ Message message_of_sizes(const std::vector<std::vector<double>>& arrays) {
   Message message;
   message.header.type = MessageType::result;
   for (std::size_t i = 0; i < arrays.size(); ++i)
-    add_array(message, {"a" + std::to_string(i), 1, arrays[i]});
+    add_array(message, {fmt::format("a{}", i), 1, arrays[i]});
   return message;
 }
 
@@ -47,7 +48,7 @@ TEST(Channel, brings_arrays_of_any_size_aligned_and_unchanged) {
       EXPECT_TRUE(frame.size() == 0 ||
                   reinterpret_cast<std::uintptr_t>(frame.data()) % alignof(double) == 0);
       const auto got = fields_of(*arrival->message)
-                           .scalars("a" + std::to_string(i), static_cast<int>(arrays[i].size()));
+                           .scalars(fmt::format("a{}", i), static_cast<int>(arrays[i].size()));
       EXPECT_TRUE(std::equal(got.begin(), got.end(), arrays[i].begin(), arrays[i].end()));
     }
   }

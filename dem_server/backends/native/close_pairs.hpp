@@ -8,17 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "dem_server/backends/native/pair_list.hpp"
 #include "dem_server/backends/native/springs.hpp"
 
 namespace fluxpact {
-
-/// A pair of neighbours, held by one of the two.
-struct Pair {
-  std::int32_t other = 0;   ///< the partner's place; in its block for an inner pair
-  std::uint16_t mine = 0;   ///< place of the holder in its block
-  std::uint8_t shift = 13;  ///< periods to add to the partner's position (Shift)
-  std::uint8_t law = 0;     ///< row of the table of laws
-};
 
 /// Those of one list that were `close` when it was last gone through, in its order and in batches
 /// of eight as the vector registers want them. All others are apart for sure for some sub-steps
@@ -54,8 +47,8 @@ class ClosePairs {
   }
   /// The pairs at `places` (ascending) of the list, with the springs that they have in `before`,
   /// which is of the same list.
-  void renew(std::span<const Pair> list, std::span<const std::int32_t> places,
-             const ClosePairs& before) {
+  template <class List>
+  void renew(const List& list, std::span<const std::int32_t> places, const ClosePairs& before) {
     each_ = before.each_;
     assign(list, places);
     int old = 0;
@@ -70,16 +63,14 @@ class ClosePairs {
     count_ = other.count_;
     pairs_ = other.pairs_;
     each_ = other.each_;
-    resize(other.batches_.size(), batches_);
-    resize(other.places_.size(), places_);
-    resize(other.springs_.size(), springs_);
-    std::copy(other.batches_.begin(), other.batches_.end(), batches_.begin());
-    std::copy(other.places_.begin(), other.places_.end(), places_.begin());
-    std::copy(other.springs_.begin(), other.springs_.end(), springs_.begin());
+    assign_with_room(other.batches_, batches_);
+    assign_with_room(other.places_, places_);
+    assign_with_room(other.springs_, springs_);
   }
   /// Springs kept earlier: only the pairs that have some are here then, until the list is gone
   /// through. `places`: room.
-  void bring_back(std::span<const Pair> list, const PairSprings<Real>& from,
+  template <class List>
+  void bring_back(const List& list, const PairSprings<Real>& from,
                   std::vector<std::int32_t>& places) {
     places.clear();
     from.visit([&](int place, const Real*) { places.push_back(place); });
@@ -91,20 +82,21 @@ class ClosePairs {
 
  private:
   /// Pairs without springs.
-  void assign(std::span<const Pair> list, std::span<const std::int32_t> places) {
+  template <class List>
+  void assign(const List& list, std::span<const std::int32_t> places) {
     count_ = static_cast<int>(places.size());
-    pairs_ = static_cast<int>(list.size());
+    pairs_ = list.size();
     const std::size_t batches = (places.size() + batch_size - 1) / batch_size;
-    resize(batches, batches_);
-    resize(batches * batch_size, places_);
-    resize(batches * batch_size * static_cast<std::size_t>(each_.count), springs_);
+    resize_with_room(batches, batches_);
+    resize_with_room(batches * batch_size, places_);
+    resize_with_room(batches * batch_size * static_cast<std::size_t>(each_.count), springs_);
     std::fill(springs_.begin(), springs_.end(), Real{0});
     for (int n = 0; n < static_cast<int>(batches) * batch_size; ++n) {
       const std::int32_t place = places[std::min(n, count_ - 1)];
       places_[n] = place;
       Batch& batch = batches_[n / batch_size];
-      batch.mine[n % batch_size] = list[place].mine;
-      batch.other[n % batch_size] = list[place].other;
+      batch.mine[n % batch_size] = list.mine[place];
+      batch.other[n % batch_size] = list.other[place];
     }
   }
   void put(int n, const Real* numbers, int stride) {
@@ -124,14 +116,6 @@ class ClosePairs {
       if (numbers[std::ptrdiff_t{k} * batch_size] != 0) return true;
     }
     return false;
-  }
-  template <class Values>
-  static void resize(std::size_t size, Values& values) {
-    if (size > values.capacity()) {
-      Values().swap(values);  // first away with the old one: both at once would be the peak
-      values.reserve(with_room(size));
-    }
-    values.resize(size);
   }
 
   HugeVector<Batch> batches_;

@@ -30,21 +30,23 @@ inline constexpr BitPlaces bit_places = [] {
   return places;
 }();
 
-/// Bits of those of `count` pairs of a list, the first of a batch, that are close: as near as the
-/// room, or so within the flight, in which the distance grows by no less than its first rate times
-/// the time.
-template <class Real, bool turning, Kind kind>
-HWY_INLINE unsigned sift(const BlockPass<Real, turning>& pass, const Pair* list, int count) {
+/// Bits of those of `count` pairs of a list, from `first` on, that are close: as near as the room,
+/// or so within the flight, in which the distance grows by no less than its first rate times the
+/// time.
+template <class Real, bool turning, Kind kind, class Place>
+HWY_INLINE unsigned sift(const BlockPass<Real, turning>& pass, const PairList<Place>& list,
+                         int first, int count) {
   const Positions d;
-  const auto pair = [&](int k) { return list + std::min(k, count - 1); };
+  const auto pair = [&](int k) { return first + std::min(k, count - 1); };
   Partners<Real, turning> partners;
   find_partners<Real, turning, kind>(
-      pass, [&](int k) { return pair(k)->mine; }, [&](int k) { return pair(k)->other; }, partners);
+      pass, [&](int k) { return list.mine[pair(k)]; }, [&](int k) { return list.other[pair(k)]; },
+      partners);
   auto relative = between<Real, turning>(partners);
   auto& apart = relative.apart;
   if constexpr (kind == Kind::image) {
     shift(
-        pass, [&](int k) { return pair(k)->shift; }, apart);
+        pass, [&](int k) { return list.shift[pair(k)]; }, apart);
   }
   Quad<hn::Vec<Positions>> velocity;
   if constexpr (sizeof(Real) == sizeof(double)) {
@@ -68,13 +70,13 @@ HWY_INLINE unsigned sift(const BlockPass<Real, turning>& pass, const Pair* list,
 }
 
 /// All pairs of a list: which of them are close now. Springs stay with those that have some.
-template <class Real, bool turning, Kind kind>
-HWY_INLINE void go_through(const BlockPass<Real, turning>& pass, const std::vector<Pair>& pairs,
+template <class Real, bool turning, Kind kind, class Place>
+HWY_INLINE void go_through(const BlockPass<Real, turning>& pass, const PairList<Place>& pairs,
                            ClosePairs<Real>& close) {
-  const int size = static_cast<int>(pairs.size());
+  const int size = pairs.size();
   const int whole = size / width * width;
   std::vector<std::int32_t>& found = pass.search->places;
-  found.resize(std::max(found.size(), pairs.size() + width));
+  found.resize(std::max(found.size(), static_cast<std::size_t>(size + width)));
   int count = 0;
   const Places d;
   const auto add = [&](int at, unsigned bits) HWY_ATTR {
@@ -84,13 +86,11 @@ HWY_INLINE void go_through(const BlockPass<Real, turning>& pass, const std::vect
     count += std::popcount(bits);
   };
   for (int at = 0; at < whole; at += width) {
-    const Pair* later = pairs.data() + std::min(at + fetch_ahead, whole - width);
-    fetch(theirs<Real, turning, kind>(pass), [&](int k) { return later[k].other; });
-    add(at, sift<Real, turning, kind>(pass, pairs.data() + at, width));
+    const Place* later = pairs.other.data() + std::min(at + fetch_ahead, whole - width);
+    fetch(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
+    add(at, sift<Real, turning, kind>(pass, pairs, at, width));
   }
-  if (whole < size) {
-    add(whole, sift<Real, turning, kind>(pass, pairs.data() + whole, size - whole));
-  }
+  if (whole < size) add(whole, sift<Real, turning, kind>(pass, pairs, whole, size - whole));
   ClosePairs<Real>& renewed = pass.search->renewed;
   renewed.renew(pairs, {found.data(), static_cast<std::size_t>(count)}, close);
   close.copy(renewed);

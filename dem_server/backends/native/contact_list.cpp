@@ -19,7 +19,6 @@ struct Sources {
   const Resorting& resorting;
   const ContactList<Real>* before;
   const FormerSprings<Real>& springs;
-  const std::vector<float>& slack;  // [m] of each particle
   std::array<Vector3, 27> shifts;
   SpringNumbers numbers;  // of each pair
   int spring_rows;        // of each contact with a wall
@@ -28,6 +27,12 @@ struct Sources {
     return scope.laws.index(material_of_row[list.row[i]], other_material);
   }
 };
+
+/// How far a particle may go [m], while the list is made.
+template <class Real>
+double slack_of(const ContactList<Real>& list, int place) {
+  return static_cast<double>(list.listed_at[place].offset[3]);
+}
 
 /// How a pair stood in the list before.
 struct FormerPair {
@@ -41,11 +46,12 @@ struct Held {
   bool mirrored = false;  // the partner held it
 };
 
-int find_pair(const std::vector<Pair>& pairs, int mine, int other, int shift) {
-  auto at = std::lower_bound(pairs.begin(), pairs.end(), mine,
-                             [](const Pair& pair, int place) { return pair.mine < place; });
-  for (; at != pairs.end() && at->mine == mine; ++at) {
-    if (at->other == other && at->shift == shift) return static_cast<int>(at - pairs.begin());
+template <class Place>
+int find_pair(const PairList<Place>& pairs, int mine, int other, int shift) {
+  const auto at = std::lower_bound(pairs.mine.begin(), pairs.mine.end(), mine);
+  for (auto n = at - pairs.mine.begin(); n < pairs.size() && pairs.mine[n] == mine; ++n) {
+    const bool same_image = pairs.shift.empty() || pairs.shift[n] == shift;
+    if (pairs.other[n] == other && same_image) return static_cast<int>(n);
   }
   return -1;
 }
@@ -91,18 +97,19 @@ Held<Real> former_springs(const Sources<Real, turning>& from, int i, int j, int 
 
 /// Springs of the pairs of a new list; `first` and `base` turn its places into those of all
 /// particles.
-template <class Real, bool turning>
+template <class Real, bool turning, class Place>
 void carry_springs(const Sources<Real, turning>& from, const FoundPairs& pairs, int first, int base,
-                   typename ListMaking<Real>::Found& found, ClosePairs<Real>& close) {
+                   typename ListMaking<Real>::Found& found, const PairList<Place>& list,
+                   ClosePairs<Real>& close) {
   PairSprings<Real>& springs = found.springs;
-  springs.reset(static_cast<int>(pairs.listed.size()), from.numbers, 0);
+  springs.reset(list.size(), from.numbers, 0);
   for (const std::int32_t contact : pairs.touching) {
     if (from.before == nullptr || from.numbers.count == 0) break;
     const Pair& pair = pairs.listed[contact];
     const Held<Real> held = former_springs(from, first + pair.mine, base + pair.other, pair.shift);
     if (held.numbers != nullptr) springs.append(contact, held.numbers, 1, held.mirrored);
   }
-  close.bring_back(pairs.listed, springs, found.places);
+  close.bring_back(list, springs, found.places);
 }
 
 template <class Real, bool turning>
@@ -116,7 +123,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
   for (int i = first; i < last; ++i) {
     const Body<Real, turning>& a = from.spheres[i];
     const double touch = a.radius + from.scope.beyond_contact;
-    const double reach = touch + static_cast<double>(from.slack[i]);
+    const double reach = touch + slack_of(list, i);
     const bool fixed = a.inverse_mass == 0;
     const auto add = [&](int begin, int end, int shift, FoundPairs& pairs, int base) {
       const Vector3& image = from.shifts[shift];
@@ -125,7 +132,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
         const double x = a.position[0] - b.position[0] - image[0];
         const double y = a.position[1] - b.position[1] - image[1];
         const double z = a.position[2] - b.position[2] - image[2];
-        const double sum = reach + b.radius + static_cast<double>(from.slack[j]);
+        const double sum = reach + b.radius + slack_of(list, j);
         const double square = x * x + y * y + z * z;
         if (square >= sum * sum || j == i) continue;
         if (fixed && b.inverse_mass == 0) continue;  // neither would move
@@ -148,12 +155,13 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
       add(std::max(begin, last), end, shift, found.outer, 0);
     });
   }
-  assign_with_room(found.inner.listed, block.inner);
-  assign_with_room(found.outer.listed, block.outer);
-  assign_with_room(found.image.listed, block.image);
-  carry_springs(from, found.inner, first, first, found, block.inner_close);
-  carry_springs(from, found.outer, first, 0, found, block.outer_close);
-  carry_springs(from, found.image, first, 0, found, block.image_close);
+  const bool laws = !from.scope.one_law;
+  block.inner.assign(found.inner.listed, {.law = laws});
+  block.outer.assign(found.outer.listed, {.law = laws});
+  block.image.assign(found.image.listed, {.shift = true, .law = laws});
+  carry_springs(from, found.inner, first, first, found, block.inner, block.inner_close);
+  carry_springs(from, found.outer, first, 0, found, block.outer, block.outer_close);
+  carry_springs(from, found.image, first, 0, found, block.image, block.image_close);
   block.budget.forget();
   find_partners(list.blocks, block);
 }
@@ -188,8 +196,7 @@ void find_planes(const Sources<Real, turning>& from, int index, const ContactLis
       if (domain.sides[side] != SideKind::wall) continue;
       const double inward = side % 2 == 0 ? 1.0 : -1.0;
       const double distance = inward * (body.position[side / 2] - domain.plane(side));
-      const double slack = static_cast<double>(from.slack[i]);
-      if (!(distance < body.radius + slack + from.scope.beyond_contact)) continue;
+      if (!(distance < body.radius + slack_of(list, i) + from.scope.beyond_contact)) continue;
       const int law = from.law(list, i, from.scope.laws.walls());
       block.planes.push_back({static_cast<std::uint16_t>(i - first),
                               static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(law)});
@@ -248,8 +255,8 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
     if (body.inverse_mass == 0) continue;  // fixed: no wall moves it
     const std::size_t had = contacts.elements.size();
     // A wall that moves has as much as the slowest particle.
-    const double reach = body.radius + from.scope.beyond_contact +
-                         static_cast<double>(from.slack[i]) + from.scope.slack.least;
+    const double reach =
+        body.radius + from.scope.beyond_contact + slack_of(list, i) + from.scope.slack.least;
     const bool held = from.scope.walls.nearby(Eigen::Map<const Vector3>(body.position), reach,
                                               former_elements(from, i), contacts.elements);
     if (!held) contacts.lost = i - first;
@@ -279,10 +286,10 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
 /// How far each particle may go; the farthest [m].
 template <class Real, bool turning>
 double grant_slack(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
-                   std::vector<float>& slack) {
+                   HugeVector<ListedAt>& listed_at) {
   const auto& [least, most, flight] = scope.slack;
   const int count = static_cast<int>(spheres.size());
-  slack.resize(count);
+  listed_at.resize(count);
   float farthest = static_cast<float>(least);
 #pragma omp parallel for num_threads(scope.threads) schedule(static) reduction(max : farthest)
   for (int i = 0; i < count; ++i) {
@@ -290,13 +297,14 @@ double grant_slack(const ContactScope& scope, std::span<const Body<Real, turning
     for (const Real v : spheres[i].velocity) {
       square += static_cast<double>(v) * static_cast<double>(v);
     }
-    slack[i] = static_cast<float>(std::min(std::max(least, flight * std::sqrt(square)), most));
-    farthest = std::max(farthest, slack[i]);
+    float& slack = listed_at[i].offset[3];
+    slack = static_cast<float>(std::min(std::max(least, flight * std::sqrt(square)), most));
+    farthest = std::max(farthest, slack);
   }
   return static_cast<double>(farthest);
 }
 
-/// Where the particles are now, and how far they may go.
+/// Where the particles are now, and how far they may go: the last step of the list.
 template <class Real, bool turning>
 void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
   Vector3 lower = Vector3::Zero();
@@ -310,14 +318,13 @@ void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
   list.origin = 0.5 * (lower + upper);
   // Half an ulp of a float in each axis, relative to the farthest offset.
   const double rounding = 0.5 * (upper - lower).norm() * 6e-8;
-  list.listed_at.resize(count);
 #pragma omp parallel for num_threads(from.scope.threads) schedule(static)
   for (int i = 0; i < count; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       list.listed_at[i].offset[axis] =
           static_cast<float>(from.spheres[i].position[axis] - list.origin[axis]);
     }
-    const double own = std::max(static_cast<double>(from.slack[i]) - rounding, 0.0);
+    const double own = std::max(slack_of(list, i) - rounding, 0.0);
     const double rest = std::sqrt(list.reach * list.reach - own * own);
     const auto nearest = static_cast<float>(from.spheres[i].radius + rest);
     list.listed_at[i].offset[3] = std::nextafter(nearest, std::numeric_limits<float>::infinity());
@@ -330,8 +337,8 @@ template <class Real>
 void find_partners(const Blocks& blocks, ContactBlock<Real>& block) {
   block.partners.clear();
   for (const auto* pairs : {&block.outer, &block.image}) {
-    for (const Pair& pair : *pairs) {
-      const int partner = blocks.holding(pair.other);
+    for (const int other : pairs->other) {
+      const int partner = blocks.holding(other);
       if (std::ranges::find(block.partners, partner) != block.partners.end()) continue;
       block.partners.push_back(partner);
     }
@@ -405,14 +412,12 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                                     resorting,
                                     before,
                                     making.springs,
-                                    making.slack,
                                     shift_vectors(scope.domain),
                                     spring_numbers(scope.laws.model()),
                                     spring_rows(scope.laws.model())};
   list.block.resize(list.blocks.count());
   making.found.resize(scope.threads);
-  list.reach = grant_slack(scope, spheres, making.slack);
-  mark_places(from, list);
+  list.reach = grant_slack(scope, spheres, list.listed_at);
   if (before != nullptr) making.springs.plan(*before, list.blocks, resorting.previous);
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
   for (int b = 0; b < list.blocks.count(); ++b) {
@@ -422,6 +427,7 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
     find_planes(from, b, list, list.block[b]);
     find_surfaces(from, b, list, list.block[b].surfaces);
   }
+  mark_places(from, list);
 }
 
 #define FLUXPACT_INSTANTIATE(Real, turning)                                               \

@@ -32,9 +32,9 @@ struct NearPlane {
 /// of another but positions and velocities.
 template <class Real>
 struct ContactBlock {
-  std::vector<Pair> inner;
-  std::vector<Pair> outer;  ///< partner in another block
-  std::vector<Pair> image;  ///< across a periodic side
+  InnerList inner;
+  OuterList outer;  ///< partner in another block
+  OuterList image;  ///< across a periodic side
   std::vector<NearPlane> planes;
   ClosePairs<Real> inner_close, outer_close, image_close;
   CloseBudget budget;  ///< of those
@@ -46,7 +46,8 @@ struct ContactBlock {
 /// Where a particle was when the list was made: [m] from an origin. Float is enough, since the
 /// reach that is left to a particle allows for its rounding. The last number stands in line with
 /// the radius in a row of positions and is the larger the less the particle may move: the square of
-/// the difference of the two rows is below that of the list's `reach` as long as it may.
+/// the difference of the two rows is below that of the list's `reach` as long as it may. While the
+/// list is made, that number is the slack of the particle [m].
 struct alignas(16) ListedAt {
   float offset[4];
 };
@@ -77,6 +78,7 @@ struct ContactScope {
   const Walls& walls;
   std::span<const int> surface_materials;
   const ContactLaws& laws;
+  bool one_law = false;  ///< all contacts have the same
   Slack slack;
   double beyond_contact = 0;  ///< [m] that a law reaches beyond touching surfaces
   int threads = 1;
@@ -153,7 +155,6 @@ struct ListMaking {
   };
   std::vector<Found> found;  // by thread
   FormerSprings<Real> springs;
-  std::vector<float> slack;  // [m] of each particle
 };
 
 /// Make `list` for spheres that `levels` has sorted: its blocks and rows are set already.

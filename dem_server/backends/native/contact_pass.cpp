@@ -100,7 +100,7 @@ HWY_INLINE Moved move_any(const BlockPass<Real, turning>& pass) {
   if (pass.phase == Phase::drift) return kick_and_drift(pass, pass.time_step);
   if (pass.phase == Phase::start) {
     for (int i = pass.first; i < pass.last; ++i) {
-      pass.sum[i - pass.first] = full(pass.kept[i].load);
+      pass.sum[i - pass.first] = full(pass.kept_loads[i]);
     }
     return kick_and_drift(pass, 0.5 * pass.time_step);
   }

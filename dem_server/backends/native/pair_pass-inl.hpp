@@ -207,10 +207,10 @@ HWY_INLINE const ContactModel& model_of(const BlockPass<Real, turning>& pass) {
   }
 }
 
-/// First step: how the partners stand and move to each other.
+/// First step: how the partners stand and move to each other. `shifts`: of the pairs of the list.
 template <bool plain, class Real, bool turning, Kind kind>
-FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const Pair* list,
-                                    PairBatch<Real, turning>& batch) {
+FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass,
+                                    const std::uint8_t* shifts, PairBatch<Real, turning>& batch) {
   const ContactModel& model = model_of<plain>(pass);
   Partners<Real, turning> partners;
   find_partners<Real, turning, kind>(
@@ -218,7 +218,7 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const 
   auto relative = between<Real, turning>(partners);
   if constexpr (kind == Kind::image) {
     shift(
-        pass, [&](int k) { return list[batch.place[k]].shift; }, relative.apart);
+        pass, [&](int k) { return shifts[batch.place[k]]; }, relative.apart);
   }
   const Positions dp;
   const auto reach = hn::Add(relative.apart.d, hn::Set(dp, pass.beyond_contact));
@@ -243,9 +243,9 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass, const 
   }
 }
 
-/// Second step: springs and forces.
+/// Second step: springs and forces. `laws`: of the pairs of the list, unless all have the same.
 template <bool plain, class Real, bool turning>
-FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const Pair* list,
+FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const std::uint8_t* laws,
                                    PairBatch<Real, turning>& batch) {
   const Lanes<Real> d;
   const ContactModel& model = model_of<plain>(pass);
@@ -259,7 +259,7 @@ FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const P
     });
     batch.touch.root_mass = hn::Set(d, static_cast<Real>(pass.root_masses.pair));
   } else {
-    law = law_of(*pass.laws, [&](int k) { return list[batch.place[k]].law; });
+    law = law_of(*pass.laws, [&](int k) { return laws[batch.place[k]]; });
   }
   contact_force<turning>(d, model, law, batch.touch,
                          hn::Set(d, static_cast<Real>(pass.spring_step)), spring,
@@ -311,11 +311,12 @@ HWY_INLINE void fetch(const Body<Real, turning>* from, const Other& other) {
 }
 
 /// The forces of all close pairs of one kind.
-template <bool plain, class Real, bool turning, Kind kind>
-HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const std::vector<Pair>& pairs,
+template <bool plain, class Real, bool turning, Kind kind, class Place>
+HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const PairList<Place>& pairs,
                            ClosePairs<Real>& close) {
   constexpr int batch_size = ClosePairs<Real>::batch_size;
-  const Pair* const list = pairs.data();
+  const std::uint8_t* const shifts = pairs.shift.data();
+  const std::uint8_t* const laws = pairs.law.data();
   const int count = close.count();
   const int ahead_most = std::max(0, count - 1) / width * width;
   PairBatch<Real, turning> batches[batches_at_once];
@@ -338,8 +339,8 @@ HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const std::vect
         for (int k = 0; k < width; ++k) hwy::Prefetch(pass.sum + later[k]);
       }
     }
-    for (int b = 0; b < full; ++b) approach<plain, Real, turning, kind>(pass, list, batches[b]);
-    for (int b = 0; b < full; ++b) respond<plain, Real, turning>(pass, list, batches[b]);
+    for (int b = 0; b < full; ++b) approach<plain, Real, turning, kind>(pass, shifts, batches[b]);
+    for (int b = 0; b < full; ++b) respond<plain, Real, turning>(pass, laws, batches[b]);
     for (int b = 0; b < full; ++b) hand_over<plain, Real, turning, kind>(pass, batches[b]);
   }
 }

@@ -1,5 +1,6 @@
 // The native engine: its state and what it does with it. Soft spheres of one precision, with or
-// without spins; the parts stand in soft_spheres_{setup,run,lists,exchange,state}-inl.hpp.
+// without spins; the parts stand in
+// soft_spheres_{setup,run,candidate,lists,exchange,state}-inl.hpp.
 #pragma once
 
 #include <omp.h>
@@ -42,6 +43,12 @@ struct Sizes {
   double beyond_contact = 0;  // [m] that a law reaches beyond touching surfaces
 };
 
+/// A body that its list has beyond a periodic side, through which it is presented.
+struct Beyond {
+  int place;
+  Vector3 position;  ///< [m] of the body
+};
+
 /// Of a window in which particles entered or left: what rollback brings back.
 struct BeforeExchange {
   ParticleState presented;
@@ -78,7 +85,7 @@ class SoftSpheres final : public ParticleEngine {
   void size_up();
   BodyRow body_of(int row) const;
   void tabulate_sides();
-  void set_drive(std::span<const Vector3> force, bool keep);
+  void set_drive(std::span<const Vector3> force);
   void plan_turns();
   void meet(const BlockPass<Real, turning>& pass) const;
   double kick(int block) const;
@@ -88,7 +95,13 @@ class SoftSpheres final : public ParticleEngine {
   void put_in(const ParticleState& entering, Places& places);
   void wrap();
   void check(double time_step, int sub_step, int sub_steps) const;
+  void set_motion(int row, BodyRow& body) const;
+  void present_motion(int place);
   void present();
+  void present_candidate();
+  void take_back_candidate();
+  void give_committed(ParticleState& to) const;
+  void put_beyond(const std::vector<Beyond>& bodies);
   void save_springs();
   void bring_back_springs();
   template <class Visit>
@@ -117,16 +130,20 @@ class SoftSpheres final : public ParticleEngine {
   double time_step_;       // [s] of the scene
   Sizes sizes_;
 
+  // The presented state is the newest. Of the committed one the bodies hold the motion (positions,
+  // velocities, spins) from the end of a window until it is committed or rolled back: `swapped_`.
   ParticleState presented_;
-  HugeVector<BodyRow> bodies_;  // of the newest state
-  HugeVector<LoadRow> loads_;   // of the newest state, between windows; within: drives
-  HugeVector<KeptBody<Real, turning>> kept_;  // while there is a candidate: the committed state
+  HugeVector<BodyRow> bodies_;
+  HugeVector<LoadRow> loads_;       // of the newest state, between windows; within: drives
+  HugeVector<LoadRow> kept_loads_;  // while there is a candidate: of the committed state
+  std::vector<Beyond> beyond_, kept_beyond_;  // of the newest and of the committed state
   std::array<List, 3> lists_;                 // in use, kept for rollback, being made
   int list_ = 0;
   int committed_list_ = 0;
   std::vector<SavedSprings<Real>> saved_springs_;  // by block of the committed list
   std::optional<BeforeExchange> before_exchange_;
   bool has_candidate_ = false;
+  bool swapped_ = false;
   BlockTurns turns_;
   HugeVector<Load<Real, turning>> sums_;  // rooms of each thread
   std::vector<double> kicks_;  // [m/s] of each block, the largest of a particle since blocks met
@@ -143,6 +160,7 @@ class SoftSpheres final : public ParticleEngine {
 
 }  // namespace fluxpact
 
+#include "dem_server/backends/native/soft_spheres_candidate-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_exchange-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_lists-inl.hpp"
 #include "dem_server/backends/native/soft_spheres_run-inl.hpp"

@@ -3,6 +3,7 @@
 
 #include "dem_server/backends/native/soft_spheres.hpp"
 #include "dem_server/backends/native/soft_spheres_lists-inl.hpp"
+#include "dem_server/backends/native/soft_spheres_setup-inl.hpp"
 
 namespace fluxpact {
 
@@ -10,8 +11,12 @@ template <class Real, bool turning>
 void SoftSpheres<Real, turning>::exchange(std::span<const int> leaving,
                                           const ParticleState& entering) {
   if (leaving.empty() && entering.size() == 0) return;
-  if (!before_exchange_) before_exchange_ = BeforeExchange{presented_, sizes_};
-  const ParticleState checked = checked_rows(entering, laws_.walls());
+  if (!before_exchange_) {
+    before_exchange_ = BeforeExchange{presented_, sizes_};
+    if (swapped_) give_committed(before_exchange_->presented);
+    take_back_candidate();
+  }
+  const ParticleState checked = as_held<Real>(checked_rows(entering, laws_.walls()));
   Places places = take_out(leaving);
   exchange_rows(leaving, checked, presented_);
   put_in(checked, places);

@@ -76,8 +76,14 @@ void SoftSpheres<Real, turning>::sort_and_list(const Places* places, bool carry_
   if (places != nullptr) {
     for (const int place : order) previous.push_back(places->previous[place]);
   }
-  const ContactScope scope{
-      domain_, walls_, surface_materials_, laws_, sizes_.slack, sizes_.beyond_contact, threads_};
+  const ContactScope scope{domain_,
+                           walls_,
+                           surface_materials_,
+                           laws_,
+                           law_table_.one_law,
+                           sizes_.slack,
+                           sizes_.beyond_contact,
+                           threads_};
   make_contact_list<Real, turning>(scope, bodies_, presented_.material, levels_,
                                    {places != nullptr ? previous : order, periods_},
                                    carry_springs ? &before : nullptr, making_, list);

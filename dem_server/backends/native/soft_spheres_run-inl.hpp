@@ -1,4 +1,4 @@
-// One window: sub-steps, checks, committed and candidate state.
+// One window: sub-steps and checks.
 #pragma once
 
 #include "dem_server/backends/native/soft_spheres.hpp"
@@ -9,14 +9,13 @@ namespace fluxpact {
 /// often.
 inline constexpr double usual_room_per_slack = 0.04;
 
-/// Drives in place of the forces of contacts; at the start of a window the state is `kept` first.
+/// Drives in place of the forces of contacts.
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force, bool keep) {
+void SoftSpheres<Real, turning>::set_drive(std::span<const Vector3> force) {
   const int count = presented_.size();
   int bad = count;
 #pragma omp parallel for num_threads(threads_) schedule(static) reduction(min : bad)
   for (int i = 0; i < count; ++i) {
-    if (keep) kept_[i] = kept(bodies_[i], loads_[i]);
     const int row = lists_[list_].row[i];
     const double inverse_mass = static_cast<double>(bodies_[i].inverse_mass);
     const Vector3 fall = inverse_mass > 0 ? gravity_ : Vector3(Vector3::Zero());
@@ -44,7 +43,7 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   all.time_step = time_step;
   all.spring_step = spring_step;
   all.bodies = bodies_.data();
-  all.kept = kept_.data();
+  all.kept_loads = kept_loads_.data();
   all.loads = loads_.data();
   all.listed_at = list.listed_at.data();
   all.origin = list.origin.data();
@@ -138,9 +137,11 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
                         presented_.size());
   }
   save_springs();
-  kept_.resize(bodies_.size());
+  std::swap(loads_, kept_loads_);
+  loads_.resize(bodies_.size());
+  kept_beyond_ = beyond_;
   has_candidate_ = true;
-  set_drive(force, true);
+  set_drive(force);
   plan_turns();
   bool beyond = sweep(Phase::start, time_step, 0);
   for (int step = 1; step <= sub_steps; ++step) {
@@ -149,7 +150,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
       check(time_step, step, sub_steps);
       check_surfaces();  // what this list has noted would go with it
       sort_and_list(nullptr, true);
-      set_drive(force, false);
+      set_drive(force);
     }
     const Phase phase = step < sub_steps ? Phase::drift : Phase::settle;
     beyond = sweep(phase, time_step, time_step);
@@ -159,16 +160,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
   sub_steps_ += sub_steps;
   check(time_step, sub_steps, sub_steps);
   check_surfaces();
-  present();
-}
-
-template <class Real, bool turning>
-void SoftSpheres<Real, turning>::commit() {
-  if (!has_candidate_) return;
-  has_candidate_ = false;
-  committed_list_ = list_;
-  time_ += window_;
-  before_exchange_.reset();
+  present_candidate();
 }
 
 template <class Real, bool turning>
@@ -195,84 +187,11 @@ void SoftSpheres<Real, turning>::check(double time_step, int sub_step, int sub_s
 }
 
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::present() {
-  const List& list = lists_[list_];
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (int i = 0; i < presented_.size(); ++i) {
-    const BodyRow& body = bodies_[i];
-    const int row = list.row[i];
-    const Eigen::Map<const Vector3> position(body.position);
-    presented_.position[row] = any_periodic_ ? wrapped(domain_, position) : Vector3(position);
-    for (int axis = 0; axis < 3; ++axis) {
-      presented_.velocity[row][axis] = static_cast<double>(body.velocity[axis]);
-      if constexpr (turning) {
-        presented_.spin[row][axis] = static_cast<double>(body.radius_spin[axis]) / body.radius;
-      }
-    }
-  }
-}
-
-template <class Real, bool turning>
-void SoftSpheres<Real, turning>::save_springs() {
-  if (spring_rows(laws_.model()) == 0 && walls_.empty()) return;
-  const List& list = lists_[list_];
-  saved_springs_.resize(list.block.size());
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (int b = 0; b < list.blocks.count(); ++b) {
-    const ContactBlock<Real>& block = list.block[b];
-    SavedSprings<Real>& saved = saved_springs_[b];  // its memory is used again
-    saved.pairs.take(block);
-    saved.plane.keep(block.plane_springs);
-    saved.surface.keep(block.surfaces.springs);
-    saved.touches = block.surfaces.touches;
-  }
-}
-
-template <class Real, bool turning>
-void SoftSpheres<Real, turning>::bring_back_springs() {
-  for (ContactBlock<Real>& block : lists_[list_].block) block.budget.forget();
-  for (std::size_t b = 0; b < saved_springs_.size(); ++b) {
-    ContactBlock<Real>& block = lists_[list_].block[b];
-    const SavedSprings<Real>& saved = saved_springs_[b];
-    saved.pairs.bring_back(block);
-    block.plane_springs.keep(saved.plane);
-    block.surfaces.springs.keep(saved.surface);
-    block.surfaces.touches = saved.touches;
-    block.surfaces.lost = -1;
-  }
-}
-
-template <class Real, bool turning>
-void SoftSpheres<Real, turning>::rollback() {
-  if (!has_candidate_) return;
-  has_candidate_ = false;
-  if (list_ != committed_list_) swap_close_pairs(lists_[list_], lists_[committed_list_]);
-  list_ = committed_list_;
-  if (before_exchange_) {
-    presented_ = std::move(before_exchange_->presented);
-    sizes_ = before_exchange_->sizes;
-    before_exchange_.reset();
-  }
-  bring_back_springs();
-  const std::vector<int>& row_of = lists_[list_].row;
-  bodies_.resize(kept_.size());
-  loads_.resize(kept_.size());
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    bodies_[i] = body_of(row_of[i]);  // a new list may have put others here
-    put_back(kept_[i], bodies_[i]);
-    loads_[i] = kept_[i].load;
-  }
-  present();
-}
-
-template <class Real, bool turning>
 EngineCounters SoftSpheres<Real, turning>::counters() const {
   EngineCounters counters{sub_steps_, rebuilds_, 0};
   for (const ContactBlock<Real>& block : lists_[list_].block) {
     // What two blocks hold is one pair.
-    counters.list_pairs += static_cast<std::int64_t>(block.inner.size() +
-                                                     (block.outer.size() + block.image.size()) / 2);
+    counters.list_pairs += block.inner.size() + (block.outer.size() + block.image.size()) / 2;
   }
   return counters;
 }

@@ -20,6 +20,24 @@ inline void check_law_indices(const ContactLaws& laws) {
       laws.walls());
 }
 
+/// Velocities and spins as bodies of this precision have them, so that presented rows and bodies
+/// tell the same.
+template <class Real>
+ParticleState as_held(ParticleState particles) {
+  if constexpr (sizeof(Real) == sizeof(double)) return particles;
+  const auto rounded = [](double number) { return static_cast<double>(static_cast<Real>(number)); };
+  for (int row = 0; row < particles.size(); ++row) {
+    const double radius = particles.radius[row];
+    for (int axis = 0; axis < 3; ++axis) {
+      double& velocity = particles.velocity[row][axis];
+      double& spin = particles.spin[row][axis];
+      velocity = rounded(velocity);
+      spin = rounded(radius * spin) / radius;
+    }
+  }
+  return particles;
+}
+
 /// Of particles that all have the same mass, and are free.
 inline RootMasses common_root_masses(const ParticleState& particles) {
   const int count = particles.size();
@@ -42,7 +60,7 @@ SoftSpheres<Real, turning>::SoftSpheres(const Scene& scene, const Mesh& mesh, Co
       gravity_(scene.scene.gravity),
       flow_(particles_flow(scene)),
       walls_(make_walls(scene, mesh)),
-      presented_(checked_rows(std::move(initial), laws_.walls())) {
+      presented_(as_held<Real>(checked_rows(std::move(initial), laws_.walls()))) {
   const auto is = [this](SideKind kind) {
     return std::find(domain_.sides.begin(), domain_.sides.end(), kind) != domain_.sides.end();
   };
@@ -200,15 +218,21 @@ auto SoftSpheres<Real, turning>::body_of(int row) const -> BodyRow {
   if (!presented_.is_fixed(row)) {
     body.inverse_mass = static_cast<Real>(1 / sphere_mass(radius, presented_.density[row]));
   }
+  if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
+  set_motion(row, body);
+  return body;
+}
+
+/// Of a body that has its radius.
+template <class Real, bool turning>
+void SoftSpheres<Real, turning>::set_motion(int row, BodyRow& body) const {
   for (int axis = 0; axis < 3; ++axis) {
     body.position[axis] = presented_.position[row][axis];
     body.velocity[axis] = static_cast<Real>(presented_.velocity[row][axis]);
     if constexpr (turning) {
-      body.radius_spin[axis] = static_cast<Real>(radius * presented_.spin[row][axis]);
+      body.radius_spin[axis] = static_cast<Real>(body.radius * presented_.spin[row][axis]);
     }
   }
-  if constexpr (turning) body.inverse_radius = static_cast<Real>(1 / radius);
-  return body;
 }
 
 }  // namespace fluxpact

@@ -9,7 +9,7 @@
 namespace fluxpact {
 
 /// Of the layout below.
-inline constexpr int native_state_version = 2;
+inline constexpr int native_state_version = 3;
 
 /// Below which the indices of a block stay.
 struct StateLimits {
@@ -19,22 +19,24 @@ struct StateLimits {
   int surfaces = 0;
 };
 
-// The whole numbers of a row of each list, each with its limit.
-template <class Visit>
-void visit_columns(const Pair*, const StateLimits& limits, bool in_block, const Visit& visit) {
-  visit("other", &Pair::other, in_block ? limits.own : limits.all);
-  visit("mine", &Pair::mine, limits.own);
-  visit("shift", &Pair::shift, 27);
-  visit("law", &Pair::law, limits.laws);
+// The whole numbers of pairs, and of a row of each other list, each with its limit.
+template <class Place, class Visit>
+void visit_columns(const PairList<Place>*, const StateLimits& limits, const PairColumns& columns,
+                   const Visit& visit) {
+  constexpr bool in_block = std::is_same_v<PairList<Place>, InnerList>;
+  visit("other", &PairList<Place>::other, in_block ? limits.own : limits.all);
+  visit("mine", &PairList<Place>::mine, limits.own);
+  if (columns.shift) visit("shift", &PairList<Place>::shift, 27);
+  if (columns.law) visit("law", &PairList<Place>::law, limits.laws);
 }
 template <class Visit>
-void visit_columns(const NearPlane*, const StateLimits& limits, bool, const Visit& visit) {
+void visit_columns(const NearPlane*, const StateLimits& limits, const Visit& visit) {
   visit("mine", &NearPlane::mine, limits.own);
   visit("side", &NearPlane::side, 6);
   visit("law", &NearPlane::law, limits.laws);
 }
 template <class Visit>
-void visit_columns(const SurfaceTouch*, const StateLimits& limits, bool, const Visit& visit) {
+void visit_columns(const SurfaceTouch*, const StateLimits& limits, const Visit& visit) {
   visit("surface", &SurfaceTouch::surface, limits.surfaces);
   visit("feature", &SurfaceTouch::feature, 0x1p31);
   visit("mine", &SurfaceTouch::mine, limits.own);
@@ -44,31 +46,29 @@ void visit_columns(const SurfaceTouch*, const StateLimits& limits, bool, const V
 // The kinds of contacts: a name, and where a block holds their rows and springs.
 struct InnerPairs {
   static constexpr auto name = "inner";
-  static constexpr bool in_block = true;
+  static constexpr bool shifted = false;
   static auto& rows(auto& block) { return block.inner; }
   static auto& close(auto& block) { return block.inner_close; }
 };
 struct OuterPairs {
   static constexpr auto name = "outer";
-  static constexpr bool in_block = false;
+  static constexpr bool shifted = false;
   static auto& rows(auto& block) { return block.outer; }
   static auto& close(auto& block) { return block.outer_close; }
 };
 struct ImagePairs {
   static constexpr auto name = "image";
-  static constexpr bool in_block = false;
+  static constexpr bool shifted = true;
   static auto& rows(auto& block) { return block.image; }
   static auto& close(auto& block) { return block.image_close; }
 };
 struct PlaneContacts {
   static constexpr auto name = "planes";
-  static constexpr bool in_block = false;
   static auto& rows(auto& block) { return block.planes; }
   static auto& springs(auto& block) { return block.plane_springs; }
 };
 struct Touches {
   static constexpr auto name = "touches";
-  static constexpr bool in_block = false;
   static auto& rows(auto& block) { return block.surfaces.touches; }
   static auto& springs(auto& block) { return block.surfaces.springs; }
 };
@@ -89,31 +89,42 @@ inline std::string state_name(const char* kind, const char* column) {
 // ---- out ----------------------------------------------------------------------------------------
 
 /// The rows of all blocks one after the other, column by column, and the numbers of the springs of
-/// each contact.
+/// each contact. `several_laws`: the pairs tell which is theirs.
 template <class Kind, class Real>
-void store_kind(const std::vector<ContactBlock<Real>>& blocks, int spring_rows,
+void store_kind(const std::vector<ContactBlock<Real>>& blocks, int spring_rows, bool several_laws,
                 EngineState& state) {
   std::vector<double>& counts = state.add_scalars(state_name(Kind::name, "of_block"));
   for (const auto& block : blocks) {
     counts.push_back(static_cast<double>(Kind::rows(block).size()));
   }
-  using Row = typename std::remove_cvref_t<decltype(Kind::rows(blocks.front()))>::value_type;
-  const Row* const row_type = nullptr;
-  visit_columns(row_type, {}, Kind::in_block, [&](const char* column, auto member, double) {
-    std::vector<double>& values = state.add_scalars(state_name(Kind::name, column));
+  using Rows = std::remove_cvref_t<decltype(Kind::rows(blocks.front()))>;
+  if constexpr (requires { Kind::shifted; }) {
+    const Rows* const rows_type = nullptr;
+    visit_columns(rows_type, {}, {Kind::shifted, several_laws},
+                  [&](const char* column, auto member, double) {
+                    std::vector<double>& values = state.add_scalars(state_name(Kind::name, column));
+                    for (const auto& block : blocks) {
+                      const auto& own = Kind::rows(block).*member;
+                      values.insert(values.end(), own.begin(), own.end());
+                    }
+                  });
+    std::vector<double>& springs = state.add_scalars(state_name(Kind::name, "springs"));
     for (const auto& block : blocks) {
-      for (const Row& row : Kind::rows(block)) values.push_back(static_cast<double>(row.*member));
-    }
-  });
-  std::vector<double>& springs = state.add_scalars(state_name(Kind::name, "springs"));
-  for (const auto& block : blocks) {
-    if constexpr (requires { Kind::close(block); }) {
       PairSprings<Real> taken;
       Kind::close(block).take_springs(taken);
       taken.store(spring_rows, springs);
-    } else {
-      Kind::springs(block).store(springs);
     }
+  } else {
+    using Row = typename Rows::value_type;
+    const Row* const row_type = nullptr;
+    visit_columns(row_type, {}, [&](const char* column, auto member, double) {
+      std::vector<double>& values = state.add_scalars(state_name(Kind::name, column));
+      for (const auto& block : blocks) {
+        for (const Row& row : Kind::rows(block)) values.push_back(static_cast<double>(row.*member));
+      }
+    });
+    std::vector<double>& springs = state.add_scalars(state_name(Kind::name, "springs"));
+    for (const auto& block : blocks) Kind::springs(block).store(springs);
   }
 }
 
@@ -203,16 +214,14 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
     velocity.push_back(as_vector(body.velocity));
   }
   for (const LoadRow& load : loads_) force.push_back(as_vector(load.force));
+  state.add_vectors("spin") = presented_.spin;
   if constexpr (turning) {
-    std::vector<Vector3>& radius_spin = state.add_vectors("body_radius_spin");
     std::vector<Vector3>& lever = state.add_vectors("contact_lever");
-    for (const BodyRow& body : bodies_) {
-      radius_spin.push_back(as_vector(body.radius_spin));
-    }
     for (const LoadRow& load : loads_) lever.push_back(as_vector(load.lever));
   }
-  visit_kinds(
-      [&]<class Kind>(Kind) { store_kind<Kind>(list.block, spring_rows(laws_.model()), state); });
+  visit_kinds([&]<class Kind>(Kind) {
+    store_kind<Kind>(list.block, spring_rows(laws_.model()), !law_table_.one_law, state);
+  });
   store_surfaces(list.block, state);
 }
 
@@ -227,8 +236,8 @@ inline std::vector<std::size_t> read_parts(const StateReader& state, const std::
 }
 
 template <class Kind, class Real, class Limits>
-void restore_kind(const StateReader& state, const ContactModel& model, const Limits& limits,
-                  std::vector<ContactBlock<Real>>& blocks) {
+void restore_kind(const StateReader& state, const ContactModel& model, bool several_laws,
+                  const Limits& limits, std::vector<ContactBlock<Real>>& blocks) {
   std::size_t sum = 0;
   const auto parts = read_parts(state, state_name(Kind::name, "of_block"), blocks.size(), sum);
   const int rows_each = spring_rows(model);
@@ -237,27 +246,41 @@ void restore_kind(const StateReader& state, const ContactModel& model, const Lim
   std::size_t first = 0;
   for (std::size_t b = 0; b < blocks.size(); first += parts[b++]) {
     auto& rows = Kind::rows(blocks[b]);
-    using Row = typename std::remove_reference_t<decltype(rows)>::value_type;
-    rows.assign(parts[b], Row{});
-    const Row* const row_type = nullptr;
-    visit_columns(
-        row_type, limits(b), Kind::in_block, [&](const char* column, auto member, double end) {
-          const std::string name = state_name(Kind::name, column);
-          const auto values = state.scalars(name, sum);
-          for (std::size_t k = 0; k < rows.size(); ++k) {
-            using Whole = std::remove_reference_t<decltype(rows[k].*member)>;
-            rows[k].*member =
-                static_cast<Whole>(StateReader::whole(name, first + k, values[first + k], end));
-          }
-        });
+    using Rows = std::remove_reference_t<decltype(rows)>;
     const auto here = springs.subspan(first * each, parts[b] * each);
     const int count = static_cast<int>(parts[b]);
-    if constexpr (requires { Kind::close(blocks[b]); }) {
+    const auto read_column = [&](const char* column, double end, const auto& put) {
+      const std::string name = state_name(Kind::name, column);
+      const auto values = state.scalars(name, sum);
+      for (std::size_t k = 0; k < parts[b]; ++k) {
+        put(k, StateReader::whole(name, first + k, values[first + k], end));
+      }
+    };
+    if constexpr (requires { Kind::shifted; }) {
+      const Rows* const rows_type = nullptr;
+      visit_columns(rows_type, limits(b), {Kind::shifted, several_laws},
+                    [&](const char* column, auto member, double end) {
+                      auto& own = rows.*member;
+                      using Whole = typename std::remove_reference_t<decltype(own)>::value_type;
+                      own.resize(parts[b]);
+                      read_column(column, end, [&](std::size_t k, double value) {
+                        own[k] = static_cast<Whole>(value);
+                      });
+                    });
       PairSprings<Real> stored;
       std::vector<std::int32_t> room;
       stored.restore(count, spring_numbers(model), rows_each, here);
       Kind::close(blocks[b]).bring_back(rows, stored, room);
     } else {
+      using Row = typename Rows::value_type;
+      rows.assign(parts[b], Row{});
+      const Row* const row_type = nullptr;
+      visit_columns(row_type, limits(b), [&](const char* column, auto member, double end) {
+        read_column(column, end, [&](std::size_t k, double value) {
+          using Whole = std::remove_reference_t<decltype(rows[k].*member)>;
+          rows[k].*member = static_cast<Whole>(value);
+        });
+      });
       Kind::springs(blocks[b]).restore(count, rows_each, here);
     }
   }
@@ -328,8 +351,9 @@ auto SoftSpheres<Real, turning>::restored_list(const StateReader& state, int cou
     return StateLimits{list.blocks.last(block) - list.blocks.first(block), count, laws_.count(),
                        walls_.size()};
   };
-  visit_kinds(
-      [&]<class Kind>(Kind) { restore_kind<Kind>(state, laws_.model(), limits, list.block); });
+  visit_kinds([&]<class Kind>(Kind) {
+    restore_kind<Kind>(state, laws_.model(), !law_table_.one_law, limits, list.block);
+  });
   for (ContactBlock<Real>& block : list.block) find_partners(list.blocks, block);
   restore_surfaces(state, laws_.walls(), walls_.element_codes(), limits, list.block);
   for (std::size_t i = 0; i < rows; ++i) {
@@ -352,15 +376,14 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
   const auto position = state.vectors("body_position", rows);
   const auto velocity = state.vectors("body_velocity", rows);
   const auto force = state.vectors("contact_force", rows);
-  const auto turns = turning ? rows : 0;
-  const auto radius_spin =
-      turning ? state.vectors("body_radius_spin", turns) : std::span<const Vector3>{};
-  const auto lever = turning ? state.vectors("contact_lever", turns) : std::span<const Vector3>{};
+  const auto spin = state.vectors("spin", rows);
+  const auto lever = turning ? state.vectors("contact_lever", rows) : std::span<const Vector3>{};
   const double time = state.number("time");
   const double walls_at = state.number("walls_at");
   const double sub_steps = state.number("sub_steps");
   const double rebuilds = state.number("rebuilds");
 
+  stored.spin.assign(spin.begin(), spin.end());
   rollback();
   std::swap(presented_, stored);
   const Sizes own_sizes = sizes_;
@@ -380,7 +403,6 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
       body.velocity[axis] = static_cast<Real>(velocity[i][axis]);
       loads_[i].force[axis] = static_cast<Real>(force[i][axis]);
       if constexpr (turning) {
-        body.radius_spin[axis] = static_cast<Real>(radius_spin[i][axis]);
         loads_[i].lever[axis] = static_cast<Real>(lever[i][axis]);
       }
     }

@@ -54,37 +54,6 @@ struct KeptLoad<Real, false> {
   Real force[4];  // the last number is 0
 };
 
-/// Of a body and its load what changes: the committed state while a window runs.
-template <class Real, bool turning>
-struct KeptBody {
-  double position[3];
-  Real velocity[3];
-  Real radius_spin[3];
-  KeptLoad<Real, turning> load;
-};
-template <class Real>
-struct KeptBody<Real, false> {
-  double position[3];
-  Real velocity[3];
-  KeptLoad<Real, false> load;
-};
-
-template <class Real, bool turning>
-KeptBody<Real, turning> kept(const Body<Real, turning>& body, const KeptLoad<Real, turning>& load) {
-  KeptBody<Real, turning> row;
-  std::copy_n(body.position, 3, row.position);
-  std::copy_n(body.velocity, 3, row.velocity);
-  if constexpr (turning) std::copy_n(body.radius_spin, 3, row.radius_spin);
-  row.load = load;
-  return row;
-}
-/// Back into a body of the same particle.
-template <class Real, bool turning>
-void put_back(const KeptBody<Real, turning>& row, Body<Real, turning>& body) {
-  std::copy_n(row.position, 3, body.position);
-  std::copy_n(row.velocity, 3, body.velocity);
-  if constexpr (turning) std::copy_n(row.radius_spin, 3, body.radius_spin);
-}
 template <class Real, bool turning>
 KeptLoad<Real, turning> kept(const Load<Real, turning>& load) {
   KeptLoad<Real, turning> row{};

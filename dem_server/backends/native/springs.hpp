@@ -35,16 +35,21 @@ void restore_rows_of(std::span<const double> numbers, SpringRow<Real>* rows) {
 }
 
 /// Numbers of contacts go up and down: a little more than needed saves many a step upwards.
-inline std::size_t with_room(std::size_t needed) { return needed + needed / 16 + 64; }
+inline std::size_t with_room(std::size_t needed) { return needed + needed / 32 + 64; }
 
-/// A copy that grows by little.
-template <class Values, class From>
-void assign_with_room(const From& from, Values& values) {
-  if (from.size() > values.capacity()) {
+/// To another size, growing by little; what was there may be lost.
+template <class Values>
+void resize_with_room(std::size_t size, Values& values) {
+  if (size > values.capacity()) {
     Values().swap(values);  // first away with the old one: both at once would be the peak
-    values.reserve(with_room(from.size()));
+    values.reserve(with_room(size));
   }
-  values.assign(from.begin(), from.end());
+  values.resize(size);
+}
+template <class Values>
+void assign_with_room(const Values& from, Values& values) {
+  resize_with_room(from.size(), values);
+  std::copy(from.begin(), from.end(), values.begin());
 }
 
 /// Springs of contacts with walls, which are few: `spring_rows` of the contact law for each that is

@@ -67,10 +67,10 @@ TEST(ClosePairs, keep_the_springs_of_those_that_stay_close) {
   const SpringNumbers each = spring_numbers(
       {.rolling = RollingLaw::spring_dashpot, .cohesion = CohesionLaw::jkr, .friction = true});
   ASSERT_EQ(each.count, 7);
-  std::vector<Pair> list(30);
+  OuterList list;
   for (int pair = 0; pair < 30; ++pair) {
-    list[pair].other = 100 + pair;
-    list[pair].mine = static_cast<std::uint16_t>(pair / 2);
+    list.other.push_back(100 + pair);
+    list.mine.push_back(static_cast<std::uint16_t>(pair / 2));
   }
   ClosePairs<double> before;
   std::vector<std::int32_t> room;

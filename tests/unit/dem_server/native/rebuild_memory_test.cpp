@@ -109,14 +109,14 @@ TEST(OneParticle, takes_few_bytes_while_lists_are_remade) {
   }
   ASSERT_GE(engine->counters().rebuilds, 3);  // one of them at the start
   const double bytes = static_cast<double>(bytes_at_most - before) / count;
-  // State 364 (bodies 96, kept for rollback 120, loads 48, presented 100). With the room for more
-  // that vectors have, a sixteenth: two lists of 20 and 3.2 pairs of 8 each: 95. Close pairs, of 10
-  // and springs of 24 each, 1.1 to 1.3 of them: 47. Springs of 1.06 touching pairs, saved for
-  // rollback: 28; of the 3 blocks of 8 from which particles of one block come, on their way to the
+  // State 292 (bodies 96, loads 48, those kept for rollback 48, presented 100). With the room for
+  // more that vectors have, a part in 32: two lists of 20 and 3.2 pairs of 5 each: 74. Close pairs,
+  // of 10 and springs of 24 each, 1.1 to 1.3 of them: 44. Springs of 1.06 touching pairs, saved for
+  // rollback: 27; of the 3 blocks of 8 from which particles of one block come, on their way to the
   // new list: 10. What a thread finds and goes through, of one block: 14. Loads of the 3 blocks of
-  // 8 that wait for their turn: 24. Cells and order of the search: 8. That is 590 at most, since
-  // not all of it is there at once; springs of all blocks on their way would make it 607.
-  EXPECT_LT(bytes, 590);
+  // 8 that wait for their turn: 24. Cells and order of the search: 8. That is 493 at most, since
+  // not all of it is there at once.
+  EXPECT_LT(bytes, 493);
   std::printf("%.0f bytes a particle\n", bytes);
 }
 

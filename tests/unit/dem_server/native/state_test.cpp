@@ -93,6 +93,13 @@ Life life(std::vector<Axis> periodic) {
   return life;
 }
 
+/// Of several laws: contacts tell which is theirs.
+Life with_rough_walls() {
+  Life life = fluxpact::life({Axis::y});
+  life.scene.particles.contact.pairs.back().friction = 0.8;
+  return life;
+}
+
 Life with_liquid_and_rolling_springs() {
   Life life = fluxpact::life({Axis::x, Axis::y});
   ContactSettings& contact = life.scene.particles.contact;
@@ -230,6 +237,7 @@ class StoredState : public testing::TestWithParam<Setting> {};
 TEST_P(StoredState, goes_on_with_liquid_bridges_and_rolling_springs_over_periodic_sides) {
   expect_no_seam(with_liquid_and_rolling_springs(), GetParam());
 }
+TEST_P(StoredState, goes_on_with_several_laws) { expect_no_seam(with_rough_walls(), GetParam()); }
 TEST_P(StoredState, goes_on_with_adhesion_and_friction_of_elastic_spheres) {
   expect_no_seam(with_adhesion(), GetParam());
 }
@@ -319,7 +327,7 @@ class RefusedState : public testing::Test {
     return {};
   }
 
-  Life life_ = fluxpact::life({Axis::y});
+  Life life_ = with_rough_walls();
   EngineState state_;
 };
 

@@ -98,7 +98,9 @@ inline int CellGrid::cell_along(int axis, double coordinate) const {
 /// All cells from one corner to the other, in runs of cells that lie next to each other in memory.
 template <class Visit>
 void CellGrid::visit_cells(const Cell& from, const Cell& to, const Visit& visit) const {
-  const auto [run, middle, slow] = axes_;
+  const int run = axes_[0];
+  const int middle = axes_[1];
+  const int slow = axes_[2];
   const int count = cells_[run];
   std::array<int, 3> periods{};
   const auto visit_run = [&](int row, int first, int last, int period) {

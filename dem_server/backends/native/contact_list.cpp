@@ -287,10 +287,10 @@ void find_surfaces(const Sources<Real, turning>& from, int index, const ContactL
 template <class Real, bool turning>
 double grant_slack(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
                    HugeVector<ListedAt>& listed_at) {
-  const auto& [least, most, flight] = scope.slack;
+  const Slack& range = scope.slack;
   const int count = static_cast<int>(spheres.size());
   listed_at.resize(count);
-  float farthest = static_cast<float>(least);
+  float farthest = static_cast<float>(range.least);
 #pragma omp parallel for num_threads(scope.threads) schedule(static) reduction(max : farthest)
   for (int i = 0; i < count; ++i) {
     double square = 0;
@@ -298,7 +298,8 @@ double grant_slack(const ContactScope& scope, std::span<const Body<Real, turning
       square += static_cast<double>(v) * static_cast<double>(v);
     }
     float& slack = listed_at[i].offset[3];
-    slack = static_cast<float>(std::min(std::max(least, flight * std::sqrt(square)), most));
+    slack =
+        static_cast<float>(std::clamp(range.flight * std::sqrt(square), range.least, range.most));
     farthest = std::max(farthest, slack);
   }
   return static_cast<double>(farthest);

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """Judge a run of bed.yaml by the points that Mueller et al. measured.
 
-    configs/mueller2009/compare.py RUN [--start 2] [--end 12] [--figures DIRECTORY]
+    configs/mueller2009/compare.py RUN... [--start 2] [--end 12] [--figures DIRECTORY]
 
-The measurement is a mean over time and over the depth of the bed. Of a run, from `start` to `end`:
+The measurement is a mean over time and over the depth of the bed. Of a run, or of several with other packings together, from `start` to
+`end`:
 voidage    that of the recorded cells, mean over the depth, linear between the centres of cells;
 cut        voidage again, from the spheres alone: the part of a horizontal plane that they do not cover, in strips of 2 mm;
 velocity   mean over the particles within 1 mm of the height, in strips of 2 mm: each particle counts once in each record, as each seed
@@ -14,6 +15,7 @@ below 0 of one that circulates the other way round.
 """
 
 import argparse
+import contextlib
 import pathlib
 import sys
 
@@ -128,16 +130,18 @@ class Curve:
         return numpy.dot(numpy.interp(x, self.x, mean), values) / numpy.dot(values, values)
 
 
-def curves(results, start, end):
-    """All that is compared, by name and height."""
+def curves(runs, start, end):
+    """All that is compared, by name and height; `runs`: the results of one or more."""
     found = []
     for height in VOIDAGE_HEIGHTS:
         for quantity, source in (("voidage", voidage_of_cells), ("cut", voidage_of_cut)):
-            x, rows = source(results, height * 1e-3, start, end)
-            found.append(Curve(quantity, height, x, rows, numpy.ones_like(rows)))
+            parts = [source(results, height * 1e-3, start, end) for results in runs]
+            rows = numpy.concatenate([rows for _, rows in parts])
+            found.append(Curve(quantity, height, parts[0][0], rows, numpy.ones_like(rows)))
     for height in VELOCITY_HEIGHTS:
-        x, sums, counts = velocity_of_particles(results, height * 1e-3, start, end)
-        found.append(Curve("velocity", height, x, sums, counts))
+        parts = [velocity_of_particles(results, height * 1e-3, start, end) for results in runs]
+        sums, counts = (numpy.concatenate([part[column] for part in parts]) for column in (1, 2))
+        found.append(Curve("velocity", height, parts[0][0], sums, counts))
     return found
 
 
@@ -179,17 +183,19 @@ def draw(found, quantity, others, label, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", type=pathlib.Path, help="folder of the results")
+    parser.add_argument("runs", metavar="RUN", type=pathlib.Path, nargs="+", help="folder of the results")
     parser.add_argument("--start", type=float, default=2, help="begin of the mean [s]")
     parser.add_argument("--end", type=float, default=numpy.inf, help="its end [s]")
     parser.add_argument("--figures", type=pathlib.Path, help="folder for voidage and velocity, .png and .svg")
     options = parser.parse_args()
-    with h5py.File(options.run / "results.h5", "r") as results:
-        last = max(record.attrs["time"] for record in results["particles"].values())
-        if last < options.start + 0.1:
-            sys.exit(f"{options.run}: ends at {last:g} s, before there is anything to average from {options.start:g} s")
-        found = curves(results, options.start, options.end)
-    print(f"{options.run}: mean from {options.start:g} to {min(last, options.end):g} s")
+    with contextlib.ExitStack() as opened:
+        runs = [opened.enter_context(h5py.File(run / "results.h5", "r")) for run in options.runs]
+        for run, results in zip(options.runs, runs):
+            last = max(record.attrs["time"] for record in results["particles"].values())
+            if last < options.start + 0.1:
+                sys.exit(f"{run}: ends at {last:g} s, before there is anything to average from {options.start:g} s")
+            print(f"{run}: mean from {options.start:g} to {min(last, options.end):g} s")
+        found = curves(runs, options.start, options.end)
     print("\n".join(report(found)))
     if options.figures:
         options.figures.mkdir(parents=True, exist_ok=True)

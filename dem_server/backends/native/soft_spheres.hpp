@@ -99,7 +99,7 @@ class SoftSpheres final : public ParticleEngine {
   void present_motion(int place);
   void present();
   void present_candidate();
-  void take_back_candidate();
+  void take_back_motion();
   void give_committed(ParticleState& to) const;
   void put_beyond(const std::vector<Beyond>& bodies);
   void save_springs();
@@ -130,8 +130,9 @@ class SoftSpheres final : public ParticleEngine {
   double time_step_;       // [s] of the scene
   Sizes sizes_;
 
-  // The presented state is the newest. Of the committed one the bodies hold the motion (positions,
-  // velocities, spins) from the end of a window until it is committed or rolled back: `swapped_`.
+  // The presented state is the newest. From the end of a window until it is rolled back or the next
+  // one begins, the bodies hold the motion (positions, velocities, spins) that the window began
+  // with: `swapped_`.
   ParticleState presented_;
   HugeVector<BodyRow> bodies_;
   HugeVector<LoadRow> loads_;       // of the newest state, between windows; within: drives

@@ -72,10 +72,11 @@ void SoftSpheres<Real, turning>::present_candidate() {
   swapped_ = true;
 }
 
-/// Motion of the candidate to the bodies, as it is presented. (What is presented is the state: a
-/// radius times spin of doubles may differ in its last bit from what it was.)
+/// The presented motion to the bodies: of a candidate, or once the next window begins. (What is
+/// presented is the state: a radius times spin of doubles may differ in its last bit from what it
+/// was.)
 template <class Real, bool turning>
-void SoftSpheres<Real, turning>::take_back_candidate() {
+void SoftSpheres<Real, turning>::take_back_motion() {
   if (!swapped_) return;
   swapped_ = false;
 #pragma omp parallel for num_threads(threads_) schedule(static)
@@ -141,7 +142,6 @@ template <class Real, bool turning>
 void SoftSpheres<Real, turning>::commit() {
   if (!has_candidate_) return;
   has_candidate_ = false;
-  take_back_candidate();
   committed_list_ = list_;
   time_ += window_;
   before_exchange_.reset();

@@ -14,7 +14,7 @@ void SoftSpheres<Real, turning>::exchange(std::span<const int> leaving,
   if (!before_exchange_) {
     before_exchange_ = BeforeExchange{presented_, sizes_};
     if (swapped_) give_committed(before_exchange_->presented);
-    take_back_candidate();
+    take_back_motion();
   }
   const ParticleState checked = as_held<Real>(checked_rows(entering, laws_.walls()));
   Places places = take_out(leaving);

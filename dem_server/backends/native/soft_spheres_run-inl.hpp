@@ -136,6 +136,7 @@ void SoftSpheres<Real, turning>::advance(double window, int sub_steps,
     throw NumericsError("force on the particles: {} rows for {} particles", force.size(),
                         presented_.size());
   }
+  take_back_motion();
   save_springs();
   std::swap(loads_, kept_loads_);
   loads_.resize(bodies_.size());

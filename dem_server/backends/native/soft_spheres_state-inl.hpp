@@ -209,10 +209,11 @@ void SoftSpheres<Real, turning>::store(EngineState& state) const {
   std::vector<Vector3>& position = state.add_vectors("body_position");
   std::vector<Vector3>& velocity = state.add_vectors("body_velocity");
   std::vector<Vector3>& force = state.add_vectors("contact_force");
-  for (const BodyRow& body : bodies_) {
-    position.push_back(as_vector(body.position));
-    velocity.push_back(as_vector(body.velocity));
+  for (const int row : list.row) {
+    position.push_back(presented_.position[row]);
+    velocity.push_back(presented_.velocity[row]);
   }
+  for (const Beyond& body : beyond_) position[body.place] = body.position;
   for (const LoadRow& load : loads_) force.push_back(as_vector(load.force));
   state.add_vectors("spin") = presented_.spin;
   if constexpr (turning) {
@@ -394,6 +395,7 @@ void SoftSpheres<Real, turning>::restore(const Fields& fields) {
     sizes_ = own_sizes;
     throw;
   }
+  swapped_ = false;
   bodies_.resize(rows);
   loads_.assign(rows, LoadRow{});
   for (std::size_t i = 0; i < rows; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "dem_server/backends/engine_state.hpp"
 #include "tests/unit/dem_server/native/random_cloud.hpp"
 
 namespace fluxpact {
@@ -106,8 +107,9 @@ TEST_P(Rollback, leaves_no_trace_in_later_windows) {
 }
 
 /// Of two spheres that roll on each other, the first goes through a periodic side: until the next
-/// list it stays beyond it, but is presented inside.
-TEST_P(Rollback, leaves_a_pair_together_of_which_one_is_beyond_a_periodic_side) {
+/// list it stays beyond it, but is presented inside. In each window one engine takes a window back,
+/// another is made from the stored state.
+TEST_P(Rollback, and_storing_leave_a_pair_together_of_which_one_is_beyond_a_periodic_side) {
   constexpr double diameter = 1e-3;
   constexpr double length = 10 * diameter;
   Scene scene = box_scene({length, length, length}, {Axis::y});
@@ -126,11 +128,17 @@ TEST_P(Rollback, leaves_a_pair_together_of_which_one_is_beyond_a_periodic_side) 
   for (int window = 0; window < 20; ++window) {
     repeated->advance(2e-5, 10, none, {});
     repeated->rollback();
-    for (ParticleEngine* engine : {straight.get(), repeated.get()}) {
+    EngineState state;
+    straight->store(state);
+    const auto restored = make_engine(scene, start);
+    restored->restore(state.fields());
+    for (ParticleEngine* engine : {straight.get(), repeated.get(), restored.get()}) {
       engine->advance(2e-5, 10, none, {});
       engine->commit();
     }
     expect_same_bits(straight->particles(), repeated->particles());
+    expect_same_bits(straight->particles(), restored->particles());
+    EXPECT_EQ(straight->counters().rebuilds, restored->counters().rebuilds);
     const std::vector<Vector3>& position = straight->particles().position;
     apart = apart || position[0].y() < position[1].y();
   }

@@ -14,27 +14,23 @@
 namespace fluxpact {
 
 /// Those of one list that were `close` when it was last gone through, in its order and in batches
-/// of eight as the vector registers want them. All others are apart for sure for some sub-steps
+/// of as many as the widest vector register holds; the last batch is filled up with the last pair.
+/// All others are apart for sure for some sub-steps
 /// (CloseBudget), which need not look at them; a close pair that does not touch has no force and no
 /// springs.
 template <class Real>
 class ClosePairs {
  public:
-  static constexpr int batch_size = 8;
-  struct alignas(16) Batch {
-    std::int32_t other[batch_size];
-    std::uint16_t mine[batch_size];
-  };
+  static constexpr int batch_size = 64 / sizeof(Real);
 
   int count() const { return count_; }
-  /// Lanes beyond `count` repeat the last pair.
-  const Batch& batch(int b) const { return batches_[b]; }
-  /// The places of a batch in the list.
-  const std::int32_t* places(int b) const {
-    return places_.data() + std::ptrdiff_t{b} * batch_size;
-  }
-  /// The springs of a batch, number by number (SpringNumbers), eight of each.
-  Real* springs(int b) { return springs_.data() + std::ptrdiff_t{b} * batch_size * each_.count; }
+  /// The places of the partners, and of the pairs in the list.
+  const std::uint16_t* mine() const { return mine_.data(); }
+  const std::int32_t* other() const { return other_.data(); }
+  const std::int32_t* places() const { return places_.data(); }
+  /// The first number (SpringNumbers) of a pair, that of the next one in its batch beside it; the
+  /// next number is `batch_size` further.
+  Real* springs(int n) { return springs_.data() + first_number(n); }
 
   /// The springs of all pairs of the list that have some.
   void take_springs(PairSprings<Real>& to) const {
@@ -63,7 +59,8 @@ class ClosePairs {
     count_ = other.count_;
     pairs_ = other.pairs_;
     each_ = other.each_;
-    assign_with_room(other.batches_, batches_);
+    assign_with_room(other.mine_, mine_);
+    assign_with_room(other.other_, other_);
     assign_with_room(other.places_, places_);
     assign_with_room(other.springs_, springs_);
   }
@@ -86,29 +83,29 @@ class ClosePairs {
   void assign(const List& list, std::span<const std::int32_t> places) {
     count_ = static_cast<int>(places.size());
     pairs_ = list.size();
-    const std::size_t batches = (places.size() + batch_size - 1) / batch_size;
-    resize_with_room(batches, batches_);
-    resize_with_room(batches * batch_size, places_);
-    resize_with_room(batches * batch_size * static_cast<std::size_t>(each_.count), springs_);
+    const std::size_t lanes = (places.size() + batch_size - 1) / batch_size * batch_size;
+    resize_with_room(lanes, mine_);
+    resize_with_room(lanes, other_);
+    resize_with_room(lanes, places_);
+    resize_with_room(lanes * static_cast<std::size_t>(each_.count), springs_);
     std::fill(springs_.begin(), springs_.end(), Real{0});
-    for (int n = 0; n < static_cast<int>(batches) * batch_size; ++n) {
+    for (int n = 0; n < static_cast<int>(lanes); ++n) {
       const std::int32_t place = places[std::min(n, count_ - 1)];
       places_[n] = place;
-      Batch& batch = batches_[n / batch_size];
-      batch.mine[n % batch_size] = list.mine[place];
-      batch.other[n % batch_size] = list.other[place];
+      mine_[n] = list.mine[place];
+      other_[n] = list.other[place];
     }
   }
   void put(int n, const Real* numbers, int stride) {
-    Real* const to = springs_of(n);
+    Real* const to = springs(n);
     for (int k = 0; k < each_.count; ++k) {
       to[std::ptrdiff_t{k} * batch_size] = numbers[std::ptrdiff_t{k} * stride];
     }
   }
-  Real* springs_of(int n) { return springs(n / batch_size) + n % batch_size; }
-  const Real* springs_of(int n) const {
-    return springs_.data() + std::ptrdiff_t{n / batch_size} * batch_size * each_.count +
-           n % batch_size;
+  const Real* springs_of(int n) const { return springs_.data() + first_number(n); }
+  std::ptrdiff_t first_number(int n) const {
+    const int lane = n & (batch_size - 1);  // (the compiler does not know that n is not negative)
+    return std::ptrdiff_t{n - lane} * each_.count + lane;
   }
   bool has_springs(int n) const {
     const Real* const numbers = springs_of(n);
@@ -118,9 +115,10 @@ class ClosePairs {
     return false;
   }
 
-  HugeVector<Batch> batches_;
-  HugeVector<Real> springs_;
+  std::vector<std::uint16_t> mine_;
+  std::vector<std::int32_t> other_;
   std::vector<std::int32_t> places_;
+  HugeVector<Real> springs_;
   SpringNumbers each_;
   int count_ = 0;
   int pairs_ = 0;  // of the list

@@ -17,18 +17,27 @@ using Places = hn::Rebind<std::int32_t, Positions>;
 
 /// For each pattern of bits the places of those that are set, in order.
 struct BitPlaces {
-  alignas(8) std::uint8_t of[1 << width][8];
+  alignas(8) std::uint8_t of[1 << positions][8];
 };
 inline constexpr BitPlaces bit_places = [] {
   BitPlaces places{};
-  for (int bits = 0; bits < 1 << width; ++bits) {
+  for (int bits = 0; bits < 1 << positions; ++bits) {
     int next = 0;
-    for (int place = 0; place < width; ++place) {
+    for (int place = 0; place < positions; ++place) {
       if ((bits >> place & 1) != 0) places.of[bits][next++] = static_cast<std::uint8_t>(place);
     }
   }
   return places;
 }();
+
+/// Bits of the first `count` lanes where it holds.
+template <class M>
+HWY_INLINE unsigned bits_of(M holds, int count) {
+  const Positions d;
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, hn::And(holds, hn::FirstN(d, count)), bytes);
+  return bytes[0];
+}
 
 /// Bits of those of `count` pairs of a list, from `first` on, that are close: as near as the room,
 /// or so within the flight, in which the distance grows by no less than its first rate times the
@@ -38,26 +47,28 @@ HWY_INLINE unsigned sift(const BlockPass<Real, turning>& pass, const PairList<Pl
                          int first, int count) {
   const Positions d;
   const auto pair = [&](int k) { return first + std::min(k, count - 1); };
-  Partners<Real, turning> partners;
-  find_partners<Real, turning, kind>(
+  Partners<Real, turning, positions> partners;
+  find_partners<kind>(
       pass, [&](int k) { return list.mine[pair(k)]; }, [&](int k) { return list.other[pair(k)]; },
       partners);
-  auto relative = between<Real, turning>(partners);
-  auto& apart = relative.apart;
+  Quad<hn::Vec<Positions>> apart, velocity;
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    const auto both = between(partners);
+    assign(both.low, apart);
+    assign(both.high, velocity);
+  } else {
+    assign(offsets(partners, 0), apart);
+    const auto v = combine_rows(
+        hn::Rebind<Real, Positions>(), [&](int k) { return partners.a[k]->velocity; },
+        [&](int k) { return partners.b[k]->velocity; }, Flip<Real>::difference);
+    velocity.a = hn::PromoteTo(d, v.a);
+    velocity.b = hn::PromoteTo(d, v.b);
+    velocity.c = hn::PromoteTo(d, v.c);
+    velocity.d = hn::PromoteTo(d, v.d);
+  }
   if constexpr (kind == Kind::image) {
     shift(
         pass, [&](int k) { return list.shift[pair(k)]; }, apart);
-  }
-  Quad<hn::Vec<Positions>> velocity;
-  if constexpr (sizeof(Real) == sizeof(double)) {
-    velocity = relative.velocity;
-  } else {
-    const Lanes<Real> dr;
-    const auto v = combine_rows(
-        dr, [&](int k) { return partners.a[k]->velocity; },
-        [&](int k) { return partners.b[k]->velocity; }, Flip<Real>::difference);
-    velocity = {hn::PromoteTo(d, v.a), hn::PromoteTo(d, v.b), hn::PromoteTo(d, v.c),
-                hn::PromoteTo(d, v.d)};
   }
   const CloseBudget& budget = pass.contacts->budget;
   const auto square = square_of(apart);
@@ -74,9 +85,9 @@ template <class Real, bool turning, Kind kind, class Place>
 HWY_INLINE void go_through(const BlockPass<Real, turning>& pass, const PairList<Place>& pairs,
                            ClosePairs<Real>& close) {
   const int size = pairs.size();
-  const int whole = size / width * width;
+  const int whole = size / positions * positions;
   std::vector<std::int32_t>& found = pass.search->places;
-  found.resize(std::max(found.size(), static_cast<std::size_t>(size + width)));
+  found.resize(std::max(found.size(), static_cast<std::size_t>(size + positions)));
   int count = 0;
   const Places d;
   const auto add = [&](int at, unsigned bits) HWY_ATTR {
@@ -85,10 +96,10 @@ HWY_INLINE void go_through(const BlockPass<Real, turning>& pass, const PairList<
     hn::StoreU(hn::Add(hn::PromoteTo(d, set), hn::Set(d, at)), d, found.data() + count);
     count += std::popcount(bits);
   };
-  for (int at = 0; at < whole; at += width) {
-    const Place* later = pairs.other.data() + std::min(at + fetch_ahead, whole - width);
-    fetch(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
-    add(at, sift<Real, turning, kind>(pass, pairs, at, width));
+  for (int at = 0; at < whole; at += positions) {
+    const Place* later = pairs.other.data() + std::min(at + fetch_ahead, whole - positions);
+    fetch<positions>(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
+    add(at, sift<Real, turning, kind>(pass, pairs, at, positions));
   }
   if (whole < size) add(whole, sift<Real, turning, kind>(pass, pairs, whole, size - whole));
   ClosePairs<Real>& renewed = pass.search->renewed;

@@ -38,7 +38,8 @@ struct BlockPass {
   double spring_step = 0;  ///< [s] by which the springs grow
   int first = 0;           ///< particles of the block
   int last = 0;
-  Body<Real, turning>* bodies = nullptr;                ///< all particles; rows of the block move
+  Body<Real, turning>* bodies = nullptr;                ///< all particles
+  Body<Real, turning>* own = nullptr;                   ///< those of the block, which move
   const KeptLoad<Real, turning>* kept_loads = nullptr;  ///< start: of the window before
   KeptLoad<Real, turning>* loads = nullptr;  ///< drives in place of forces; settle: rows of the
                                              ///< block become loads

@@ -14,31 +14,31 @@ HWY_BEFORE_NAMESPACE();
 namespace fluxpact::HWY_NAMESPACE {
 
 /// Partners are fetched this many pairs ahead: their rows lie anywhere in the block, or beyond it.
-inline constexpr int fetch_ahead = width == 8 ? 128 : 32;
+inline constexpr int fetch_ahead = positions == 8 ? 128 : 32;
 
 /// Which of the pairs of a block: inner ones act on both partners, the others on the holder only.
 enum class Kind { inner, outer, image };
 
 /// The partners of each lane.
-template <class Real, bool turning>
+template <class Real, bool turning, int lanes = width<Real>>
 struct Partners {
-  const Body<Real, turning>* a[width];
-  const Body<Real, turning>* b[width];
+  const Body<Real, turning>* a[lanes];
+  const Body<Real, turning>* b[lanes];
 };
 
 /// What the places of the partners of a kind of pairs count from.
 template <class Real, bool turning, Kind kind>
 HWY_INLINE const Body<Real, turning>* theirs(const BlockPass<Real, turning>& pass) {
-  return kind == Kind::inner ? pass.bodies + pass.first : pass.bodies;
+  return kind == Kind::inner ? pass.own : pass.bodies;
 }
 
 /// Fills in the partners of a batch: pair(lane) has their places. (Not a constructor, nor by value:
 /// that would copy through memory.)
-template <class Real, bool turning, Kind kind, class Mine, class Other>
+template <Kind kind, class Real, bool turning, int lanes, class Mine, class Other>
 HWY_INLINE void find_partners(const BlockPass<Real, turning>& pass, const Mine& mine,
-                              const Other& other, Partners<Real, turning>& partners) {
-  for (int k = 0; k < width; ++k) {
-    partners.a[k] = pass.bodies + pass.first + mine(k);
+                              const Other& other, Partners<Real, turning, lanes>& partners) {
+  for (int k = 0; k < lanes; ++k) {
+    partners.a[k] = pass.own + mine(k);
     partners.b[k] = theirs<Real, turning, kind>(pass) + other(k);
   }
 }
@@ -53,78 +53,63 @@ HWY_INLINE void shift(const BlockPass<Real, turning>& pass, const Code& code,
   apart.c = hn::Sub(apart.c, by.c);
 }
 
-/// How the partners stand and move to each other: differences from partner to holder, and the sums
-/// of radii and of inverse masses.
-template <class Real>
-struct Relative {
-  Quad<hn::Vec<Positions>> apart;       // [m]
-  Quad<hn::Vec<Lanes<Real>>> velocity;  // [m/s]
-};
+// How the partners stand and move to each other: differences from partner to holder, and in the
+// fourth component the sums of radii [m] or of inverse masses [1/kg].
 
-template <class Real, bool turning>
-HWY_INLINE Relative<Real> between(const Partners<Real, turning>& partners) {
-  const Positions d;
-  const auto first = [&](int k) { return partners.a[k]->position; };
-  const auto second = [&](int k) { return partners.b[k]->position; };
-  if constexpr (sizeof(Real) == sizeof(double)) {  // velocities follow positions in one row
-    const auto both = combine_long_rows(d, first, second, Flip<double>::difference);
-    return {both.low, both.high};
-  } else {
-    Relative<Real> relative;
-    relative.apart = combine_rows(d, first, second, Flip<double>::difference);
-    return relative;
+/// Positions and velocities, which follow them in one row if both are doubles.
+template <bool turning>
+HWY_INLINE Eight<hn::Vec<Positions>> between(const Partners<double, turning>& partners) {
+  return combine_long_rows(
+      Positions(), [&](int k) { return partners.a[k]->position; },
+      [&](int k) { return partners.b[k]->position; }, Flip<double>::difference);
+}
+
+/// Positions, of the lanes from `first` on.
+template <bool turning, int lanes>
+HWY_INLINE Quad<hn::Vec<Positions>> offsets(const Partners<float, turning, lanes>& partners,
+                                            int first) {
+  return combine_rows(
+      Positions(), [&](int k) { return partners.a[first + k]->position; },
+      [&](int k) { return partners.b[first + k]->position; }, Flip<double>::difference);
+}
+
+/// Sums of the spins.
+template <bool turning>
+HWY_INLINE void add_spins(const Partners<double, turning>& partners,
+                          TouchLanes<hn::Vec<Lanes<double>>>& touch) {
+  if constexpr (turning) {
+    const auto w = combine_rows(
+        Lanes<double>(), [&](int k) { return partners.a[k]->radius_spin; },
+        [&](int k) { return partners.b[k]->radius_spin; }, Flip<double>::sum);
+    touch.radius_spin = {w.a, w.b, w.c};
   }
 }
 
-/// Velocities, where they do not come with the positions, and spins.
-template <class Real, bool turning>
-HWY_INLINE void add_motion(const Partners<Real, turning>& partners, Quad<hn::Vec<Lanes<Real>>>& v,
-                           TouchLanes<hn::Vec<Lanes<Real>>>& touch) {
-  const Lanes<Real> d;
-  const auto row_a = [&](int k) { return partners.a[k]->velocity; };
-  const auto row_b = [&](int k) { return partners.b[k]->velocity; };
-  if constexpr (sizeof(Real) == sizeof(double)) {
-    if constexpr (turning) {
-      const auto spin_a = [&](int k) { return partners.a[k]->radius_spin; };
-      const auto spin_b = [&](int k) { return partners.b[k]->radius_spin; };
-      const auto w = combine_rows(d, spin_a, spin_b, Flip<Real>::sum);
-      touch.radius_spin = {w.a, w.b, w.c};
-    }
+/// Velocities, and the sums of the spins, which follow them in one row.
+template <bool turning>
+HWY_INLINE Quad<hn::Vec<Lanes<float>>> add_motion(const Partners<float, turning>& partners,
+                                                  TouchLanes<hn::Vec<Lanes<float>>>& touch) {
+  const Lanes<float> d;
+  const auto first = [&](int k) { return partners.a[k]->velocity; };
+  const auto second = [&](int k) { return partners.b[k]->velocity; };
+  if constexpr (turning) {
+    const auto both = combine_long_rows(d, first, second, Flip<float>::motion);
+    touch.radius_spin = {both.high.a, both.high.b, both.high.c};
+    return both.low;
   } else {
-    if constexpr (turning) {
-      const auto both = combine_long_rows(d, row_a, row_b, Flip<Real>::motion);
-      v = both.low;
-      touch.radius_spin = {both.high.a, both.high.b, both.high.c};
-    } else {
-      v = combine_rows(d, row_a, row_b, Flip<Real>::difference);
-    }
+    return combine_rows(d, first, second, Flip<float>::difference);
   }
-  touch.velocity = {v.a, v.b, v.c};
 }
 
 /// 1/R* from the radii of the holders and the sums.
 template <class Real, bool turning>
 HWY_INLINE hn::Vec<Lanes<Real>> curvature(const Body<Real, turning>* const* a,
-                                          hn::Vec<Positions> sum) {
-  const Positions d;
-  alignas(64) double radius[width];
-  for (int k = 0; k < width; ++k) radius[k] = a[k]->radius;
+                                          hn::Vec<Lanes<Real>> sum) {
+  const Lanes<Real> d;
+  alignas(64) Real radius[width<Real>];
+  for (int k = 0; k < width<Real>; ++k) radius[k] = static_cast<Real>(a[k]->radius);
   const auto own = hn::Load(d, radius);
-  return to_real<Real>(hn::Div(sum, hn::Mul(own, hn::Sub(sum, own))));
-}
-
-template <class V>
-HWY_INLINE V square_of(const Quad<V>& apart) {
-  return hn::MulAdd(apart.a, apart.a, hn::MulAdd(apart.b, apart.b, hn::Mul(apart.c, apart.c)));
-}
-
-/// Bits of the first `count` lanes where it holds.
-template <class M>
-HWY_INLINE unsigned bits_of(M holds, int count) {
-  const Positions d;
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, hn::And(holds, hn::FirstN(d, count)), bytes);
-  return bytes[0];
+  return hn::Div(sum, hn::Mul(own, hn::Sub(sum, own)));
 }
 
 // ---- forces ----
@@ -134,7 +119,6 @@ template <class Real, bool turning>
 struct PairBatch {
   using V = hn::Vec<Lanes<Real>>;
   int count;                  // of pairs; the other lanes repeat the last
-  unsigned near;              // bits of those that touch or are within the reach of the law
   const std::uint16_t* mine;  // places of the partners
   const std::int32_t* other;
   const std::int32_t* place;  // in the list
@@ -213,24 +197,37 @@ FLUXPACT_CONTACT_STEP void approach(const BlockPass<Real, turning>& pass,
                                     const std::uint8_t* shifts, PairBatch<Real, turning>& batch) {
   const ContactModel& model = model_of<plain>(pass);
   Partners<Real, turning> partners;
-  find_partners<Real, turning, kind>(
+  find_partners<kind>(
       pass, [&](int k) { return batch.mine[k]; }, [&](int k) { return batch.other[k]; }, partners);
-  auto relative = between<Real, turning>(partners);
+  auto& touch = batch.touch;
+  Parts<Real, Quad<hn::Vec<Positions>>> apart;
+  Quad<hn::Vec<Lanes<Real>>> velocity;
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    const auto both = between(partners);
+    assign(both.low, apart.low);
+    assign(both.high, velocity);
+    add_spins(partners, touch);
+  } else {
+    assign(offsets(partners, 0), apart.low);
+    if constexpr (in_two_parts<Real>) assign(offsets(partners, positions), apart.high);
+    assign(add_motion(partners, touch), velocity);
+  }
+  touch.velocity = {velocity.a, velocity.b, velocity.c};
   if constexpr (kind == Kind::image) {
     shift(
-        pass, [&](int k) { return shifts[batch.place[k]]; }, relative.apart);
+        pass, [&](int k) { return shifts[batch.place[k]]; }, apart.low);
+    if constexpr (in_two_parts<Real>) {
+      shift(
+          pass, [&](int k) { return shifts[batch.place[positions + k]]; }, apart.high);
+    }
   }
-  const Positions dp;
-  const auto reach = hn::Add(relative.apart.d, hn::Set(dp, pass.beyond_contact));
-  batch.near = bits_of(hn::Lt(square_of(relative.apart), hn::Mul(reach, reach)), batch.count);
-  auto& touch = batch.touch;
-  find_gap<Real>(relative.apart, touch);
-  add_motion(partners, relative.velocity, touch);
+  find_gap<Real>(apart, touch);
   if constexpr (!plain) {
-    touch.root_mass = root_mass<Real>(pass.root_masses.pair, relative.velocity.d);
+    touch.root_mass = root_mass<Real>(pass.root_masses.pair, velocity.d);
   }
   if (needs_curvature(model)) {
-    touch.inverse_radius = curvature<Real>(partners.a, relative.apart.d);
+    touch.inverse_radius = curvature<Real>(
+        partners.a, to_real(apart, [](const auto& part) HWY_ATTR { return part.d; }));
   }
   if constexpr (turning) {
     if (model.rolling != RollingLaw::none) {
@@ -251,7 +248,8 @@ FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const s
   const ContactModel& model = model_of<plain>(pass);
   auto spring = load_pair_springs<Real>(model, batch.springs);
   auto out = no_force<Real>();
-  const std::uint8_t bits[8] = {static_cast<std::uint8_t>(batch.near)};
+  const auto near =
+      near_lanes<Real>(batch.touch.overlap, plain ? 0 : pass.beyond_contact, batch.count);
   LawLanes<hn::Vec<Lanes<Real>>> law;
   if constexpr (plain) {
     law = load_columns(d, model, [&](LawColumn name) HWY_ATTR {
@@ -262,8 +260,7 @@ FLUXPACT_CONTACT_STEP void respond(const BlockPass<Real, turning>& pass, const s
     law = law_of(*pass.laws, [&](int k) { return laws[batch.place[k]]; });
   }
   contact_force<turning>(d, model, law, batch.touch,
-                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring,
-                         hn::LoadMaskBits(d, bits), out);
+                         hn::Set(d, static_cast<Real>(pass.spring_step)), spring, near, out);
   store_pair_springs<Real>(model, spring, batch.springs);
   batch.out.force = out.force;
   if constexpr (turning) {
@@ -301,9 +298,9 @@ FLUXPACT_CONTACT_STEP void hand_over(const BlockPass<Real, turning>& pass,
 }
 
 /// Partners of a batch that comes later.
-template <class Real, bool turning, class Other>
+template <int lanes, class Real, bool turning, class Other>
 HWY_INLINE void fetch(const Body<Real, turning>* from, const Other& other) {
-  for (int k = 0; k < width; ++k) {
+  for (int k = 0; k < lanes; ++k) {
     const Body<Real, turning>* partner = from + other(k);
     hwy::Prefetch(partner);
     if constexpr (sizeof(*partner) > 64) hwy::Prefetch(partner->radius_spin);
@@ -314,29 +311,26 @@ HWY_INLINE void fetch(const Body<Real, turning>* from, const Other& other) {
 template <bool plain, class Real, bool turning, Kind kind, class Place>
 HWY_INLINE void pass_pairs(const BlockPass<Real, turning>& pass, const PairList<Place>& pairs,
                            ClosePairs<Real>& close) {
-  constexpr int batch_size = ClosePairs<Real>::batch_size;
+  constexpr int lanes = width<Real>;
   const std::uint8_t* const shifts = pairs.shift.data();
   const std::uint8_t* const laws = pairs.law.data();
   const int count = close.count();
-  const int ahead_most = std::max(0, count - 1) / width * width;
+  const int last = std::max(0, count - 1) / lanes * lanes;  // batch
   PairBatch<Real, turning> batches[batches_at_once];
   for (int at = 0; at < count;) {
     int full = 0;
-    for (; full < batches_at_once && at < count; ++full, at += width) {
+    for (; full < batches_at_once && at < count; ++full, at += lanes) {
       PairBatch<Real, turning>& batch = batches[full];
-      const int b = at / batch_size;
-      const int lane = at % batch_size;
-      batch.count = std::min(width, count - at);
-      batch.mine = close.batch(b).mine + lane;
-      batch.other = close.batch(b).other + lane;
-      batch.place = close.places(b) + lane;
-      batch.springs = close.springs(b) + lane;
-      const int ahead = std::min(at + fetch_ahead, ahead_most);
-      const std::int32_t* later = close.batch(ahead / batch_size).other + ahead % batch_size;
-      fetch(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
+      batch.count = std::min(lanes, count - at);
+      batch.mine = close.mine() + at;
+      batch.other = close.other() + at;
+      batch.place = close.places() + at;
+      batch.springs = close.springs(at);
+      const std::int32_t* later = close.other() + std::min(at + fetch_ahead, last);
+      fetch<lanes>(theirs<Real, turning, kind>(pass), [&](int k) { return later[k]; });
       // (With fewer lanes the instructions cost more than the fetching gains.)
-      if constexpr (kind == Kind::inner && width == 8) {
-        for (int k = 0; k < width; ++k) hwy::Prefetch(pass.sum + later[k]);
+      if constexpr (kind == Kind::inner && positions == 8) {
+        for (int k = 0; k < lanes; ++k) hwy::Prefetch(pass.sum + later[k]);
       }
     }
     for (int b = 0; b < full; ++b) approach<plain, Real, turning, kind>(pass, shifts, batches[b]);

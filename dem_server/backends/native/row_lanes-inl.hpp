@@ -22,12 +22,25 @@ struct Quad {
   V a, b, c, d;
 };
 
+/// (Number by number: a copy of the whole would go through memory by halves.)
+template <class V>
+HWY_INLINE void assign(const Quad<V>& from, Quad<V>& to) {
+  to.a = from.a;
+  to.b = from.b;
+  to.c = from.c;
+  to.d = from.d;
+}
+
 template <class D>
 inline constexpr int lanes_of = static_cast<int>(hn::MaxLanes(D()));
 
-/// True where the registers hold whole rows of four numbers, one or two of them.
+/// True where the registers hold whole rows of four numbers: one, two or four of them.
 template <class D>
-inline constexpr bool holds_rows = lanes_of<D> == 4 || lanes_of<D> == 8;
+inline constexpr bool holds_rows = lanes_of<D> == 4 || lanes_of<D> == 8 || lanes_of<D> == 16;
+
+/// The same of rows of eight numbers.
+template <class D>
+inline constexpr bool holds_long_rows = lanes_of<D> == 8 || lanes_of<D> == 16;
 
 // ---- one row ----
 
@@ -127,8 +140,8 @@ HWY_INLINE double square_norm(const Row<double>& row) {
 
 #if HWY_MAX_BYTES >= 32
 
-/// Four rows in each half of the lanes (8 lanes: rows k and k + 4 side by side) to components, or
-/// back: the same shuffles do both.
+/// Four rows in each four of the lanes (8 lanes: rows k and k + 4 side by side; 16: k, k + 4, k + 8
+/// and k + 12) to components, or back: the same shuffles do both.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> transpose(D d, const Quad<V>& rows) {
   if constexpr (sizeof(hn::TFromD<D>) == 8) {
@@ -158,18 +171,35 @@ HWY_INLINE Quad<V> transpose(D d, const Quad<V>& rows) {
   }
 }
 
+/// The rows of the lanes k, k + 4 and so on, side by side.
+template <class D, class RowOf>
+HWY_INLINE hn::Vec<D> load_row_of_lanes(D d, const RowOf& row, int k) {
+  if constexpr (lanes_of<D> == 4) {
+    return hn::LoadU(d, row(k));
+  } else {
+    const hn::Half<D> half;
+    const auto upper = load_row_of_lanes(half, row, k + lanes_of<D> / 2);
+    return hn::Combine(d, upper, load_row_of_lanes(half, row, k));
+  }
+}
+
 /// Rows at the addresses row(lane), side by side as `transpose` wants them. (Not an array of
 /// addresses: the compiler would go through memory.)
 template <class D, class RowOf, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> load_rows(D d, const RowOf& row) {
-  if constexpr (lanes_of<D> == 8) {
-    const hn::Half<D> half;
-    const auto two = [&](int k) HWY_ATTR {
-      return hn::Combine(d, hn::LoadU(half, row(k + 4)), hn::LoadU(half, row(k)));
-    };
-    return {two(0), two(1), two(2), two(3)};
+  return {load_row_of_lanes(d, row, 0), load_row_of_lanes(d, row, 1), load_row_of_lanes(d, row, 2),
+          load_row_of_lanes(d, row, 3)};
+}
+
+/// The first `count` lanes of the rows of the lanes k, k + 4 and so on, to their addresses.
+template <class D, class RowOf>
+HWY_INLINE void store_row_of_lanes(D d, hn::Vec<D> rows, int k, int count, const RowOf& row) {
+  if constexpr (lanes_of<D> == 4) {
+    if (k < count) hn::Store(rows, d, row(k));
   } else {
-    return {hn::LoadU(d, row(0)), hn::LoadU(d, row(1)), hn::LoadU(d, row(2)), hn::LoadU(d, row(3))};
+    const hn::Half<D> half;
+    store_row_of_lanes(half, hn::LowerHalf(half, rows), k, count, row);
+    store_row_of_lanes(half, hn::UpperHalf(half, rows), k + lanes_of<D> / 2, count, row);
   }
 }
 
@@ -207,7 +237,8 @@ struct Eight {
 
 #if HWY_MAX_BYTES >= 32
 
-/// Eight rows of eight numbers to components, or back.
+/// Eight rows of eight numbers in each eight of the lanes (16 lanes: rows k and k + 8 side by side)
+/// to components, or back.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Eight<V> transpose(D d, const Eight<V>& rows) {
   const Quad<V>& p = rows.low;
@@ -232,11 +263,29 @@ HWY_INLINE Eight<V> transpose(D d, const Eight<V>& rows) {
   } else {
     const Quad<V> first = transpose(d, p);   // components 0 to 3 | 4 to 7 of rows 0 to 3
     const Quad<V> second = transpose(d, q);  // of rows 4 to 7
-    return {
-        {hn::ConcatLowerLower(d, second.a, first.a), hn::ConcatLowerLower(d, second.b, first.b),
-         hn::ConcatLowerLower(d, second.c, first.c), hn::ConcatLowerLower(d, second.d, first.d)},
-        {hn::ConcatUpperUpper(d, second.a, first.a), hn::ConcatUpperUpper(d, second.b, first.b),
-         hn::ConcatUpperUpper(d, second.c, first.c), hn::ConcatUpperUpper(d, second.d, first.d)}};
+    const auto low = [d](V from, V then) HWY_ATTR {
+      if constexpr (lanes_of<D> == 8) return hn::ConcatLowerLower(d, then, from);
+      return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(then), from);
+    };
+    const auto high = [d](V from, V then) HWY_ATTR {
+      if constexpr (lanes_of<D> == 8) return hn::ConcatUpperUpper(d, then, from);
+      return hn::OddEvenBlocks(then, hn::SwapAdjacentBlocks(from));
+    };
+    return {{low(first.a, second.a), low(first.b, second.b), low(first.c, second.c),
+             low(first.d, second.d)},
+            {high(first.a, second.a), high(first.b, second.b), high(first.c, second.c),
+             high(first.d, second.d)}};
+  }
+}
+
+/// The row of eight numbers of lane k, and of k + 8 beside it if there is one.
+template <class D, class RowOf>
+HWY_INLINE hn::Vec<D> load_long_row(D d, const RowOf& row, int k) {
+  if constexpr (lanes_of<D> == 8) {
+    return hn::LoadU(d, row(k));
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, hn::LoadU(half, row(k + 8)), hn::LoadU(half, row(k)));
   }
 }
 
@@ -247,10 +296,10 @@ template <class D, class First, class Second, class T = hn::TFromD<D>, class V =
 HWY_INLINE Eight<V> combine_long_rows(D d, const First& first, const Second& second,
                                       const T* flip) {
 #if HWY_MAX_BYTES >= 32
-  if constexpr (lanes_of<D> == 8) {
+  if constexpr (holds_long_rows<D>) {
     const V sign = hn::Load(d, flip);
     const auto sum = [&](int k) HWY_ATTR {
-      return hn::Add(hn::LoadU(d, first(k)), hn::Xor(sign, hn::LoadU(d, second(k))));
+      return hn::Add(load_long_row(d, first, k), hn::Xor(sign, load_long_row(d, second, k)));
     };
     return transpose(d,
                      Eight<V>{{sum(0), sum(1), sum(2), sum(3)}, {sum(4), sum(5), sum(6), sum(7)}});
@@ -281,19 +330,10 @@ HWY_INLINE void scatter_rows(D d, const Quad<V>& components, int count, const Ro
 #if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) {
     const Quad<V> t = transpose(d, components);
-    const auto put = [&](V v, int k) HWY_ATTR {
-      if constexpr (lanes_of<D> == 8) {
-        const hn::Half<D> half;
-        if (k < count) hn::Store(hn::LowerHalf(half, v), half, row(k));
-        if (k + 4 < count) hn::Store(hn::UpperHalf(half, v), half, row(k + 4));
-      } else {
-        if (k < count) hn::Store(v, d, row(k));
-      }
-    };
-    put(t.a, 0);
-    put(t.b, 1);
-    put(t.c, 2);
-    put(t.d, 3);
+    store_row_of_lanes(d, t.a, 0, count, row);
+    store_row_of_lanes(d, t.b, 1, count, row);
+    store_row_of_lanes(d, t.c, 2, count, row);
+    store_row_of_lanes(d, t.d, 3, count, row);
     return;
   }
 #endif

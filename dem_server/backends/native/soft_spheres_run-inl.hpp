@@ -57,6 +57,7 @@ bool SoftSpheres<Real, turning>::sweep(Phase phase, double time_step, double spr
   const auto pass_of = [&](int thread, int b) {
     BlockPass<Real, turning> pass = all;
     pass.first = blocks.first(b);
+    pass.own = pass.bodies + pass.first;
     pass.last = blocks.last(b);
     pass.sum = sums_.data() + thread * of_thread +
                static_cast<std::ptrdiff_t>(turns_.room(b)) * blocks.block_size;
@@ -115,9 +116,9 @@ double SoftSpheres<Real, turning>::kick(int block) const {
 template <class Real, bool turning>
 void SoftSpheres<Real, turning>::meet(const BlockPass<Real, turning>& pass) const {
   if (!walls_.empty()) {
-    find_touches<Real, turning>(
-        walls_, laws_, surface_materials_, {pass.bodies + pass.first, pass.bodies + pass.last},
-        sizes_.beyond_contact, spring_rows(laws_.model()), pass.contacts->surfaces);
+    find_touches<Real, turning>(walls_, laws_, surface_materials_,
+                                {pass.own, pass.bodies + pass.last}, sizes_.beyond_contact,
+                                spring_rows(laws_.model()), pass.contacts->surfaces);
   }
   sum_contacts(pass);
 }

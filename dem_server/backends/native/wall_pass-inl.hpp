@@ -22,16 +22,16 @@ FLUXPACT_CONTACT_STEP void pass_walls(const BlockPass<Real, turning>& pass,
   const Lanes<Real> d;
   using V = hn::Vec<Lanes<Real>>;
   const ContactModel& model = pass.laws->model;
-  const Body<Real, turning>* body[width];
-  for (int k = 0; k < width; ++k) body[k] = pass.bodies + pass.first + contacts[k].mine;
+  const Body<Real, turning>* body[width<Real>];
+  for (int k = 0; k < width<Real>; ++k) body[k] = pass.own + contacts[k].mine;
   const auto v = gather_rows(d, [&](int k) { return body[k]->velocity; });
   touch.velocity = {hn::Sub(v.a, wall_velocity.x), hn::Sub(v.b, wall_velocity.y),
                     hn::Sub(v.c, wall_velocity.z)};
   touch.root_mass = root_mass<Real>(pass.root_masses.wall, v.d);
   touch.inverse_radius = hn::Zero(d);
   if (needs_curvature(model)) {
-    alignas(64) Real radius[width];
-    for (int k = 0; k < width; ++k) radius[k] = static_cast<Real>(body[k]->radius);
+    alignas(64) Real radius[width<Real>];
+    for (int k = 0; k < width<Real>; ++k) radius[k] = static_cast<Real>(body[k]->radius);
     touch.inverse_radius = hn::Div(hn::Set(d, 1), hn::Load(d, radius));
   }
   RollLanes<Real> roll = no_roll<Real>();
@@ -44,11 +44,9 @@ FLUXPACT_CONTACT_STEP void pass_walls(const BlockPass<Real, turning>& pass,
       touch.inverse_inertia = roll.inverse_inertia;
     }
   }
-  const auto near =
-      hn::And(hn::FirstN(d, count),
-              hn::Gt(touch.overlap, hn::Set(d, static_cast<Real>(-pass.beyond_contact))));
-  SpringRow<Real>* row_of_springs[width];
-  for (int k = 0; k < width; ++k) row_of_springs[k] = springs.of(at + std::min(k, count - 1));
+  const auto near = near_lanes<Real>(touch.overlap, pass.beyond_contact, count);
+  SpringRow<Real>* row_of_springs[width<Real>];
+  for (int k = 0; k < width<Real>; ++k) row_of_springs[k] = springs.of(at + std::min(k, count - 1));
   SpringLanes<V> spring = load_springs<Real>(model, row_of_springs);
   ForceLanes<V> out = no_force<Real>();
   contact_force<turning>(d, model, law_of(*pass.laws, [&](int k) { return contacts[k].law; }),
@@ -67,28 +65,31 @@ FLUXPACT_CONTACT_STEP void pass_walls(const BlockPass<Real, turning>& pass,
 template <class Real, bool turning>
 HWY_INLINE void pass_planes(const BlockPass<Real, turning>& pass, const NearPlane* near, int count,
                             int at, Springs<Real>& springs) {
-  const Positions dd;
-  const Lanes<Real> d;
-  const Body<Real, turning>* mine = pass.bodies + pass.first;
-  const auto x = gather_rows(dd, [&](int k) { return mine[near[k].mine].position; });
-  const auto plane = gather_rows(dd, [&](int k) { return pass.planes[near[k].side]; });
-  const auto height =
-      hn::MulAdd(x.a, plane.a, hn::MulAdd(x.b, plane.b, hn::MulSub(x.c, plane.c, plane.d)));
+  using Part = Quad<hn::Vec<Positions>>;
+  const Positions d;
+  const auto gap = parts_of<Real>([&](int first) HWY_ATTR {
+    const auto x = gather_rows(d, [&](int k) { return pass.own[near[first + k].mine].position; });
+    const auto side = gather_rows(d, [&](int k) { return pass.planes[near[first + k].side]; });
+    const auto height =
+        hn::MulAdd(x.a, side.a, hn::MulAdd(x.b, side.b, hn::MulSub(x.c, side.c, side.d)));
+    return Part{side.a, side.b, side.c, hn::Sub(x.d, height)};
+  });
   auto touch = no_touch<Real>();
-  touch.overlap = to_real<Real>(hn::Sub(x.d, height));
-  touch.normal = {to_real<Real>(plane.a), to_real<Real>(plane.b), to_real<Real>(plane.c)};
-  const auto zero = hn::Zero(d);
+  touch.overlap = to_real(gap, [](const Part& part) HWY_ATTR { return part.d; });
+  touch.normal = vectors_of(gap);
+  const auto zero = hn::Zero(Lanes<Real>());
   pass_walls<Real, turning>(pass, touch, {zero, zero, zero}, near, count, at, springs);
 }
 
 template <class Real, bool turning>
 HWY_INLINE void pass_plane_list(const BlockPass<Real, turning>& pass,
                                 const std::vector<NearPlane>& list, Springs<Real>& springs) {
+  constexpr int lanes = width<Real>;
   const int size = static_cast<int>(list.size());
-  for (int at = 0; at < size; at += width) {
-    NearPlane batch[width];
-    for (int k = 0; k < width; ++k) batch[k] = list[std::min(at + k, size - 1)];
-    pass_planes(pass, batch, std::min(width, size - at), at, springs);
+  for (int at = 0; at < size; at += lanes) {
+    NearPlane batch[lanes];
+    for (int k = 0; k < lanes; ++k) batch[k] = list[std::min(at + k, size - 1)];
+    pass_planes(pass, batch, std::min(lanes, size - at), at, springs);
   }
 }
 
@@ -97,27 +98,35 @@ template <class Real, bool turning>
 HWY_INLINE void pass_touches(const BlockPass<Real, turning>& pass, const SurfaceTouch* touches,
                              int count, int at, Springs<Real>& springs) {
   const Positions d;
-  const auto normal = gather_rows(d, [&](int k) { return touches[k].normal; });
-  const auto velocity = gather_rows(d, [&](int k) { return touches[k].velocity; });
-  alignas(64) double radius[width];
-  for (int k = 0; k < width; ++k) radius[k] = pass.bodies[pass.first + touches[k].mine].radius;
+  const auto normal = parts_of<Real>([&](int first) HWY_ATTR {
+    return gather_rows(d, [&](int k) { return touches[first + k].normal; });
+  });
+  const auto velocity = parts_of<Real>([&](int first) HWY_ATTR {
+    return gather_rows(d, [&](int k) { return touches[first + k].velocity; });
+  });
+  const auto overlap = parts_of<Real>([&](int first) HWY_ATTR {
+    alignas(64) double gap[positions];
+    for (int k = 0; k < positions; ++k) {
+      const SurfaceTouch& touch = touches[first + k];
+      gap[k] = pass.own[touch.mine].radius - touch.normal[3];
+    }
+    return hn::Load(d, gap);
+  });
   auto touch = no_touch<Real>();
-  touch.overlap = to_real<Real>(hn::Sub(hn::Load(d, radius), normal.d));
-  touch.normal = {to_real<Real>(normal.a), to_real<Real>(normal.b), to_real<Real>(normal.c)};
-  pass_walls<Real, turning>(
-      pass, touch,
-      {to_real<Real>(velocity.a), to_real<Real>(velocity.b), to_real<Real>(velocity.c)}, touches,
-      count, at, springs);
+  touch.overlap = to_real(overlap);
+  touch.normal = vectors_of(normal);
+  pass_walls<Real, turning>(pass, touch, vectors_of(velocity), touches, count, at, springs);
 }
 
 template <class Real, bool turning>
 HWY_INLINE void pass_touch_list(const BlockPass<Real, turning>& pass,
                                 const std::vector<SurfaceTouch>& list, Springs<Real>& springs) {
+  constexpr int lanes = width<Real>;
   const int size = static_cast<int>(list.size());
-  for (int at = 0; at < size; at += width) {
-    SurfaceTouch batch[width];
-    for (int k = 0; k < width; ++k) batch[k] = list[std::min(at + k, size - 1)];
-    pass_touches(pass, batch, std::min(width, size - at), at, springs);
+  for (int at = 0; at < size; at += lanes) {
+    SurfaceTouch batch[lanes];
+    for (int k = 0; k < lanes; ++k) batch[k] = list[std::min(at + k, size - 1)];
+    pass_touches(pass, batch, std::min(lanes, size - at), at, springs);
   }
 }
 

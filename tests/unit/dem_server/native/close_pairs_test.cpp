@@ -52,18 +52,25 @@ TEST(CloseBudget, is_spent_where_it_was_forgotten) {
 }
 
 /// Springs of 30 pairs, every third with some; the number n of pair p is 10 p + n + 1.
-PairSprings<double> some_springs(const SpringNumbers& each) {
-  PairSprings<double> springs;
+template <class Real>
+PairSprings<Real> some_springs(const SpringNumbers& each) {
+  PairSprings<Real> springs;
   springs.reset(30, each, 10);
   for (int pair = 0; pair < 30; pair += 3) {
-    std::array<double, 7> numbers{};
-    for (int n = 0; n < each.count; ++n) numbers[n] = 10 * pair + n + 1;
+    std::array<Real, 7> numbers{};
+    for (int n = 0; n < each.count; ++n) numbers[n] = static_cast<Real>(10 * pair + n + 1);
     springs.append(pair, numbers.data(), 1, false);
   }
   return springs;
 }
 
-TEST(ClosePairs, keep_the_springs_of_those_that_stay_close) {
+template <class Real>
+class ClosePairsOf : public testing::Test {};
+using Reals = testing::Types<double, float>;
+TYPED_TEST_SUITE(ClosePairsOf, Reals);
+
+TYPED_TEST(ClosePairsOf, keep_the_springs_of_those_that_stay_close) {
+  using Real = TypeParam;
   const SpringNumbers each = spring_numbers(
       {.rolling = RollingLaw::spring_dashpot, .cohesion = CohesionLaw::jkr, .friction = true});
   ASSERT_EQ(each.count, 7);
@@ -72,27 +79,28 @@ TEST(ClosePairs, keep_the_springs_of_those_that_stay_close) {
     list.other.push_back(100 + pair);
     list.mine.push_back(static_cast<std::uint16_t>(pair / 2));
   }
-  ClosePairs<double> before;
+  ClosePairs<Real> before;
   std::vector<std::int32_t> room;
-  before.bring_back(list, some_springs(each), room);
+  before.bring_back(list, some_springs<Real>(each), room);
   EXPECT_EQ(before.count(), 10);
   const std::vector<std::int32_t> places{1, 2, 3, 5, 6, 9, 12, 15, 20, 24, 28};
-  ClosePairs<double> renewed;
+  ClosePairs<Real> renewed;
   renewed.renew(list, places, before);
-  ClosePairs<double> close;
+  ClosePairs<Real> close;
   close.copy(renewed);
   ASSERT_EQ(close.count(), 11);
   for (int n = 0; n < 16; ++n) {  // the last batch is filled with the last pair
     const int place = places[std::min(n, 10)];
-    EXPECT_EQ(close.batch(n / 8).other[n % 8], 100 + place);
-    EXPECT_EQ(close.batch(n / 8).mine[n % 8], place / 2);
-    EXPECT_EQ(close.places(n / 8)[n % 8], place);
+    EXPECT_EQ(close.other()[n], 100 + place);
+    EXPECT_EQ(close.mine()[n], place / 2);
+    EXPECT_EQ(close.places()[n], place);
     for (int k = 0; k < 7; ++k) {
-      const double expected = place % 3 == 0 && n < 11 ? 10 * place + k + 1 : 0;
-      EXPECT_EQ(close.springs(n / 8)[8 * k + n % 8], expected) << place;
+      const int expected = place % 3 == 0 && n < 11 ? 10 * place + k + 1 : 0;
+      EXPECT_EQ(close.springs(n)[k * ClosePairs<Real>::batch_size], static_cast<Real>(expected))
+          << place;
     }
   }
-  PairSprings<double> taken;
+  PairSprings<Real> taken;
   close.take_springs(taken);
   taken.number();
   EXPECT_EQ(taken.find(1), nullptr);

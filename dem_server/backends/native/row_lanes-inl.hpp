@@ -264,12 +264,18 @@ HWY_INLINE Eight<V> transpose(D d, const Eight<V>& rows) {
     const Quad<V> first = transpose(d, p);   // components 0 to 3 | 4 to 7 of rows 0 to 3
     const Quad<V> second = transpose(d, q);  // of rows 4 to 7
     const auto low = [d](V from, V then) HWY_ATTR {
-      if constexpr (lanes_of<D> == 8) return hn::ConcatLowerLower(d, then, from);
-      return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(then), from);
+      if constexpr (lanes_of<D> == 8) {
+        return hn::ConcatLowerLower(d, then, from);
+      } else {
+        return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(then), from);
+      }
     };
     const auto high = [d](V from, V then) HWY_ATTR {
-      if constexpr (lanes_of<D> == 8) return hn::ConcatUpperUpper(d, then, from);
-      return hn::OddEvenBlocks(then, hn::SwapAdjacentBlocks(from));
+      if constexpr (lanes_of<D> == 8) {
+        return hn::ConcatUpperUpper(d, then, from);
+      } else {
+        return hn::OddEvenBlocks(then, hn::SwapAdjacentBlocks(from));
+      }
     };
     return {{low(first.a, second.a), low(first.b, second.b), low(first.c, second.c),
              low(first.d, second.d)},

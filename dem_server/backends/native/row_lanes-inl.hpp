@@ -171,15 +171,15 @@ HWY_INLINE Quad<V> transpose(D d, const Quad<V>& rows) {
   }
 }
 
-/// The rows of the lanes k, k + 4 and so on, side by side.
-template <class D, class RowOf>
-HWY_INLINE hn::Vec<D> load_row_of_lanes(D d, const RowOf& row, int k) {
-  if constexpr (lanes_of<D> == 4) {
+/// The rows of so many `numbers` of the lanes k, k + numbers and so on, side by side.
+template <int numbers, class D, class RowOf>
+HWY_INLINE hn::Vec<D> load_side_by_side(D d, const RowOf& row, int k) {
+  if constexpr (lanes_of<D> == numbers) {
     return hn::LoadU(d, row(k));
   } else {
     const hn::Half<D> half;
-    const auto upper = load_row_of_lanes(half, row, k + lanes_of<D> / 2);
-    return hn::Combine(d, upper, load_row_of_lanes(half, row, k));
+    const auto upper = load_side_by_side<numbers>(half, row, k + lanes_of<D> / 2);
+    return hn::Combine(d, upper, load_side_by_side<numbers>(half, row, k));
   }
 }
 
@@ -187,19 +187,19 @@ HWY_INLINE hn::Vec<D> load_row_of_lanes(D d, const RowOf& row, int k) {
 /// addresses: the compiler would go through memory.)
 template <class D, class RowOf, class V = hn::Vec<D>>
 HWY_INLINE Quad<V> load_rows(D d, const RowOf& row) {
-  return {load_row_of_lanes(d, row, 0), load_row_of_lanes(d, row, 1), load_row_of_lanes(d, row, 2),
-          load_row_of_lanes(d, row, 3)};
+  return {load_side_by_side<4>(d, row, 0), load_side_by_side<4>(d, row, 1),
+          load_side_by_side<4>(d, row, 2), load_side_by_side<4>(d, row, 3)};
 }
 
 /// The first `count` lanes of the rows of the lanes k, k + 4 and so on, to their addresses.
 template <class D, class RowOf>
-HWY_INLINE void store_row_of_lanes(D d, hn::Vec<D> rows, int k, int count, const RowOf& row) {
+HWY_INLINE void store_side_by_side(D d, hn::Vec<D> rows, int k, int count, const RowOf& row) {
   if constexpr (lanes_of<D> == 4) {
     if (k < count) hn::Store(rows, d, row(k));
   } else {
     const hn::Half<D> half;
-    store_row_of_lanes(half, hn::LowerHalf(half, rows), k, count, row);
-    store_row_of_lanes(half, hn::UpperHalf(half, rows), k + lanes_of<D> / 2, count, row);
+    store_side_by_side(half, hn::LowerHalf(half, rows), k, count, row);
+    store_side_by_side(half, hn::UpperHalf(half, rows), k + lanes_of<D> / 2, count, row);
   }
 }
 
@@ -284,17 +284,6 @@ HWY_INLINE Eight<V> transpose(D d, const Eight<V>& rows) {
   }
 }
 
-/// The row of eight numbers of lane k, and of k + 8 beside it if there is one.
-template <class D, class RowOf>
-HWY_INLINE hn::Vec<D> load_long_row(D d, const RowOf& row, int k) {
-  if constexpr (lanes_of<D> == 8) {
-    return hn::LoadU(d, row(k));
-  } else {
-    const hn::Half<D> half;
-    return hn::Combine(d, hn::LoadU(half, row(k + 8)), hn::LoadU(half, row(k)));
-  }
-}
-
 #endif
 
 /// The same of rows of eight numbers, for eight signs.
@@ -305,7 +294,8 @@ HWY_INLINE Eight<V> combine_long_rows(D d, const First& first, const Second& sec
   if constexpr (holds_long_rows<D>) {
     const V sign = hn::Load(d, flip);
     const auto sum = [&](int k) HWY_ATTR {
-      return hn::Add(load_long_row(d, first, k), hn::Xor(sign, load_long_row(d, second, k)));
+      return hn::Add(load_side_by_side<8>(d, first, k),
+                     hn::Xor(sign, load_side_by_side<8>(d, second, k)));
     };
     return transpose(d,
                      Eight<V>{{sum(0), sum(1), sum(2), sum(3)}, {sum(4), sum(5), sum(6), sum(7)}});
@@ -336,10 +326,10 @@ HWY_INLINE void scatter_rows(D d, const Quad<V>& components, int count, const Ro
 #if HWY_MAX_BYTES >= 32
   if constexpr (holds_rows<D>) {
     const Quad<V> t = transpose(d, components);
-    store_row_of_lanes(d, t.a, 0, count, row);
-    store_row_of_lanes(d, t.b, 1, count, row);
-    store_row_of_lanes(d, t.c, 2, count, row);
-    store_row_of_lanes(d, t.d, 3, count, row);
+    store_side_by_side(d, t.a, 0, count, row);
+    store_side_by_side(d, t.b, 1, count, row);
+    store_side_by_side(d, t.c, 2, count, row);
+    store_side_by_side(d, t.d, 3, count, row);
     return;
   }
 #endif

@@ -29,15 +29,16 @@ class SizeLevels {
     return levels_.size() == 1 ? levels_.front().grid.order() : order_;
   }
 
-  /// Calls visit(first, last, shift) with ranges of places [first, last) that hold every sphere
-  /// whose surface, moved by the shift, may be nearer than `reach` [m] to this position.
+  /// Calls visit(first, last, shift, largest_radius) with ranges of places [first, last) that hold
+  /// every sphere whose surface, moved by the shift, may be nearer than `reach` [m] to this
+  /// position; no sphere of a range has a larger radius [m].
   template <class Visit>
   void visit_near(const double* position, double reach, const Visit& visit) const {
     for (const Level& level : levels_) {
-      level.grid.visit_near(position, reach + level.largest_radius,
-                            [&](int first, int last, int shift) {
-                              visit(level.first + first, level.first + last, shift);
-                            });
+      level.grid.visit_near(
+          position, reach + level.largest_radius, [&](int first, int last, int shift) {
+            visit(level.first + first, level.first + last, shift, level.largest_radius);
+          });
     }
   }
 

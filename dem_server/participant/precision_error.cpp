@@ -57,7 +57,7 @@ void compare_overlaps(const Domain& domain, const ParticleState& exact,
   std::int64_t touching = 0;
   for (int row = 0; row < count; ++row) {
     const Vector3& x = exact.position[row];
-    levels.visit_near(x.data(), exact.radius[row], [&](int first, int last, int shift) {
+    levels.visit_near(x.data(), exact.radius[row], [&](int first, int last, int shift, double) {
       for (int place = first; place < last; ++place) {
         const int other = levels.order()[place];
         if (other == row) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -35,10 +36,14 @@ class ClosePairs {
   /// The springs of all pairs of the list that have some.
   void take_springs(PairSprings<Real>& to) const {
     int some = 0;
-    for (int n = 0; n < count_; ++n) some += has_springs(n) ? 1 : 0;
+    for (int first = 0; first < count_; first += batch_size) some += find_springs(first).count;
     to.reset(pairs_, each_, some);
-    for (int n = 0; n < count_; ++n) {
-      if (has_springs(n)) to.append(places_[n], springs_of(n), batch_size, false);
+    for (int first = 0; first < count_; first += batch_size) {
+      const WithSprings found = find_springs(first);
+      for (int k = 0; k < found.count; ++k) {
+        const int n = first + found.lane[k];
+        to.append(places_[n], springs_of(n), batch_size, false);
+      }
     }
   }
   /// The pairs at `places` (ascending) of the list, with the springs that they have in `before`,
@@ -107,12 +112,25 @@ class ClosePairs {
     const int lane = n & (batch_size - 1);  // (the compiler does not know that n is not negative)
     return std::ptrdiff_t{n - lane} * each_.count + lane;
   }
-  bool has_springs(int n) const {
-    const Real* const numbers = springs_of(n);
+  /// The pairs of a batch that have springs.
+  struct WithSprings {
+    std::array<std::uint8_t, batch_size> lane;
+    int count = 0;
+  };
+  /// Of the batch that begins with pair `first`. Which have some cannot be foretold: so there is no
+  /// branch.
+  WithSprings find_springs(int first) const {
+    std::array<std::uint8_t, batch_size> has{};
     for (int k = 0; k < each_.count; ++k) {
-      if (numbers[std::ptrdiff_t{k} * batch_size] != 0) return true;
+      const Real* const numbers = springs_of(first) + std::ptrdiff_t{k} * batch_size;
+      for (int n = 0; n < batch_size; ++n) has[n] |= numbers[n] != 0 ? 1 : 0;
     }
-    return false;
+    WithSprings found;
+    for (int n = 0; n < std::min(batch_size, count_ - first); ++n) {
+      found.lane[found.count] = static_cast<std::uint8_t>(n);
+      found.count += has[n];
+    }
+    return found;
   }
 
   std::vector<std::uint16_t> mine_;

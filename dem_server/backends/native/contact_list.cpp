@@ -20,6 +20,7 @@ struct Sources {
   const ContactList<Real>* before;
   const FormerSprings<Real>& springs;
   std::array<Vector3, 27> shifts;
+  double extent;          // [m] of the spheres and of the longest shift together
   SpringNumbers numbers;  // of each pair
   int spring_rows;        // of each contact with a wall
 
@@ -27,6 +28,9 @@ struct Sources {
     return scope.laws.index(material_of_row[list.row[i]], other_material);
   }
 };
+
+/// Relative errors of places in floats, and of what is reckoned from them, are less than this.
+constexpr double float_margin = 1e-6;
 
 /// How far a particle may go [m], while the list is made.
 template <class Real>
@@ -112,11 +116,34 @@ void carry_springs(const Sources<Real, turning>& from, const FoundPairs& pairs, 
   close.bring_back(list, springs, found.places);
 }
 
+/// A sphere in floats, as those are that it may be near to: its offset, moved by an image, and how
+/// far it reaches with the largest radius of the others, but not their slack [m].
+struct Seeker {
+  float x, y, z, reach;
+};
+
+/// Of the places [begin, end) those that may be in reach, to `near`; how many. Most are not, and
+/// which are cannot be foretold: so there is no branch.
+int sift(const Seeker& seeker, const ListedAt* others, int begin, int end, int* near) {
+  int count = 0;
+  for (int j = begin; j < end; ++j) {
+    const float* other = others[j].offset;
+    const float x = seeker.x - other[0];
+    const float y = seeker.y - other[1];
+    const float z = seeker.z - other[2];
+    const float sum = seeker.reach + other[3];
+    near[count] = j;
+    count += x * x + y * y + z * z < sum * sum ? 1 : 0;
+  }
+  return count;
+}
+
 template <class Real, bool turning>
 void find_pairs(const Sources<Real, turning>& from, int index, const ContactList<Real>& list,
                 typename ListMaking<Real>::Found& found, ContactBlock<Real>& block) {
   const int first = list.blocks.first(index);
   const int last = list.blocks.last(index);
+  const bool laws = !from.scope.one_law;
   found.inner.clear();
   found.outer.clear();
   found.image.clear();
@@ -125,9 +152,15 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
     const double touch = a.radius + from.scope.beyond_contact;
     const double reach = touch + slack_of(list, i);
     const bool fixed = a.inverse_mass == 0;
+    const float* offset = list.listed_at[i].offset;
+    Seeker seeker{};
     const auto add = [&](int begin, int end, int shift, FoundPairs& pairs, int base) {
+      if (begin >= end) return;
       const Vector3& image = from.shifts[shift];
-      for (int j = begin; j < end; ++j) {
+      if (static_cast<int>(found.near.size()) < end - begin) found.near.resize(end - begin);
+      const int count = sift(seeker, list.listed_at.data(), begin, end, found.near.data());
+      for (int k = 0; k < count; ++k) {
+        const int j = found.near[k];
         const Body<Real, turning>& b = from.spheres[j];
         const double x = a.position[0] - b.position[0] - image[0];
         const double y = a.position[1] - b.position[1] - image[1];
@@ -136,7 +169,7 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
         const double square = x * x + y * y + z * z;
         if (square >= sum * sum || j == i) continue;
         if (fixed && b.inverse_mass == 0) continue;  // neither would move
-        const int law = from.law(list, i, from.material_of_row[list.row[j]]);
+        const int law = laws ? from.law(list, i, from.material_of_row[list.row[j]]) : 0;
         // (The millionth is for the rounding of positions.)
         if (square < 1.000001 * (touch + b.radius) * (touch + b.radius)) {
           pairs.touching.push_back(static_cast<std::int32_t>(pairs.listed.size()));
@@ -145,7 +178,14 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
                                 static_cast<std::uint8_t>(shift), static_cast<std::uint8_t>(law)});
       }
     };
-    from.levels.visit_near(a.position, reach + list.reach, [&](int begin, int end, int shift) {
+    const auto visit = [&](int begin, int end, int shift, double largest_radius) {
+      // Pairs of the own block are held by the one that comes first.
+      if (shift == Shift::none && begin >= first && end <= i + 1) return;
+      const Vector3& image = from.shifts[shift];
+      const double all = reach + largest_radius;
+      seeker = {offset[0] - static_cast<float>(image[0]), offset[1] - static_cast<float>(image[1]),
+                offset[2] - static_cast<float>(image[2]),
+                static_cast<float>(all + float_margin * (all + from.extent))};
       if (shift != Shift::none) {
         add(begin, end, shift, found.image, 0);
         return;
@@ -153,9 +193,9 @@ void find_pairs(const Sources<Real, turning>& from, int index, const ContactList
       add(begin, std::min(end, first), shift, found.outer, 0);
       add(std::max(begin, i + 1), std::min(end, last), shift, found.inner, first);
       add(std::max(begin, last), end, shift, found.outer, 0);
-    });
+    };
+    from.levels.visit_near(a.position, reach + list.reach, visit);
   }
-  const bool laws = !from.scope.one_law;
   block.inner.assign(found.inner.listed, {.law = laws});
   block.outer.assign(found.outer.listed, {.law = laws});
   block.image.assign(found.image.listed, {.shift = true, .law = laws});
@@ -305,26 +345,37 @@ double grant_slack(const ContactScope& scope, std::span<const Body<Real, turning
   return static_cast<double>(farthest);
 }
 
-/// Where the particles are now, and how far they may go: the last step of the list.
+/// Where the particles are now; the diagonal of the box that holds them [m].
 template <class Real, bool turning>
-void mark_places(const Sources<Real, turning>& from, ContactList<Real>& list) {
+double mark_places(const ContactScope& scope, std::span<const Body<Real, turning>> spheres,
+                   ContactList<Real>& list) {
   Vector3 lower = Vector3::Zero();
   Vector3 upper = Vector3::Zero();
-  const int count = static_cast<int>(from.spheres.size());
+  const int count = static_cast<int>(spheres.size());
   for (int i = 0; i < count; ++i) {
-    const Eigen::Map<const Vector3> at(from.spheres[i].position);
+    const Eigen::Map<const Vector3> at(spheres[i].position);
     lower = i == 0 ? Vector3(at) : Vector3(lower.cwiseMin(at));
     upper = i == 0 ? Vector3(at) : Vector3(upper.cwiseMax(at));
   }
   list.origin = 0.5 * (lower + upper);
-  // Half an ulp of a float in each axis, relative to the farthest offset.
-  const double rounding = 0.5 * (upper - lower).norm() * 6e-8;
-#pragma omp parallel for num_threads(from.scope.threads) schedule(static)
+#pragma omp parallel for num_threads(scope.threads) schedule(static)
   for (int i = 0; i < count; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       list.listed_at[i].offset[axis] =
-          static_cast<float>(from.spheres[i].position[axis] - list.origin[axis]);
+          static_cast<float>(spheres[i].position[axis] - list.origin[axis]);
     }
+  }
+  return (upper - lower).norm();
+}
+
+/// What the slack of each particle leaves of its radius and reach: the last step of the list.
+template <class Real, bool turning>
+void mark_slack(const Sources<Real, turning>& from, double diagonal, ContactList<Real>& list) {
+  const int count = static_cast<int>(from.spheres.size());
+  // Half an ulp of a float in each axis, relative to the farthest offset.
+  const double rounding = 0.5 * diagonal * 6e-8;
+#pragma omp parallel for num_threads(from.scope.threads) schedule(static)
+  for (int i = 0; i < count; ++i) {
     const double own = std::max(slack_of(list, i) - rounding, 0.0);
     const double rest = std::sqrt(list.reach * list.reach - own * own);
     const auto nearest = static_cast<float>(from.spheres[i].radius + rest);
@@ -406,6 +457,11 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                        const std::vector<int>& material, const SizeLevels& levels,
                        const Resorting& resorting, ContactList<Real>* before,
                        ListMaking<Real>& making, ContactList<Real>& list) {
+  list.block.resize(list.blocks.count());
+  making.found.resize(scope.threads);
+  list.reach = grant_slack(scope, spheres, list.listed_at);
+  const double diagonal = mark_places(scope, spheres, list);
+  const std::array<Vector3, 27> shifts = shift_vectors(scope.domain);
   const Sources<Real, turning> from{scope,
                                     spheres,
                                     material,
@@ -413,12 +469,10 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
                                     resorting,
                                     before,
                                     making.springs,
-                                    shift_vectors(scope.domain),
+                                    shifts,
+                                    diagonal + shifts.back().norm(),
                                     spring_numbers(scope.laws.model()),
                                     spring_rows(scope.laws.model())};
-  list.block.resize(list.blocks.count());
-  making.found.resize(scope.threads);
-  list.reach = grant_slack(scope, spheres, list.listed_at);
   if (before != nullptr) making.springs.plan(*before, list.blocks, resorting.previous);
 #pragma omp parallel for num_threads(scope.threads) schedule(dynamic, 1)
   for (int b = 0; b < list.blocks.count(); ++b) {
@@ -428,7 +482,7 @@ void make_contact_list(const ContactScope& scope, std::span<const Body<Real, tur
     find_planes(from, b, list, list.block[b]);
     find_surfaces(from, b, list, list.block[b].surfaces);
   }
-  mark_places(from, list);
+  mark_slack(from, diagonal, list);
 }
 
 #define FLUXPACT_INSTANTIATE(Real, turning)                                               \

@@ -152,6 +152,7 @@ struct ListMaking {
     FoundPairs inner, outer, image;
     PairSprings<Real> springs;
     std::vector<std::int32_t> places;
+    std::vector<int> near;
   };
   std::vector<Found> found;  // by thread
   FormerSprings<Real> springs;

@@ -5,7 +5,7 @@
 
 namespace fluxpact {
 
-bool is_sound(const Domain& domain, const Motion& motion, double time_step) {
+bool is_sound_after_all(const Domain& domain, const Motion& motion, double time_step) {
   if (!motion.position.allFinite() || !motion.velocity.allFinite()) return false;
   if (lost_through(domain, motion.position, motion.radius) >= 0) return false;
   return motion.velocity.norm() * time_step <= motion.radius;

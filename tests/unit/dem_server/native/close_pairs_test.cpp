@@ -109,6 +109,44 @@ TYPED_TEST(ClosePairsOf, keep_the_springs_of_those_that_stay_close) {
   EXPECT_EQ(*taken.find(24), 241);
 }
 
+/// One number that is not 0 is a spring, whichever it is; none is none. In whole batches and in a
+/// part of one.
+TYPED_TEST(ClosePairsOf, take_the_springs_of_those_that_have_some) {
+  using Real = TypeParam;
+  const SpringNumbers each = spring_numbers(
+      {.rolling = RollingLaw::spring_dashpot, .cohesion = CohesionLaw::jkr, .friction = true});
+  constexpr int pairs = 3 * ClosePairs<Real>::batch_size - 5;
+  OuterList list;
+  std::vector<std::int32_t> places;
+  for (int pair = 0; pair < pairs; ++pair) {
+    list.other.push_back(100 + pair);
+    list.mine.push_back(static_cast<std::uint16_t>(pair));
+    places.push_back(pair);
+  }
+  ClosePairs<Real> none;
+  std::vector<std::int32_t> room;
+  PairSprings<Real> empty;
+  empty.reset(pairs, each, 0);
+  none.bring_back(list, empty, room);
+  ClosePairs<Real> close;
+  close.renew(list, places, none);
+  const auto number = [](int pair) { return static_cast<Real>(pair % 2 == 0 ? pair + 1 : -pair); };
+  for (int pair = 0; pair < pairs; ++pair) {
+    if (pair % 8 == 7) continue;
+    close.springs(pair)[pair % 8 * ClosePairs<Real>::batch_size] = number(pair);
+  }
+  PairSprings<Real> taken;
+  close.take_springs(taken);
+  taken.number();
+  for (int pair = 0; pair < pairs; ++pair) {
+    const Real* const found = taken.find(pair);
+    ASSERT_EQ(found == nullptr, pair % 8 == 7) << pair;
+    for (int k = 0; found != nullptr && k < each.count; ++k) {
+      EXPECT_EQ(found[k], k == pair % 8 ? number(pair) : 0) << pair;
+    }
+  }
+}
+
 TEST(PairSprings, seen_from_the_partner_change_their_sign_but_for_what_is_even) {
   const SpringNumbers each =
       spring_numbers({.cohesion = CohesionLaw::liquid_bridge, .friction = true});

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "tests/unit/dem_server/native/random_cloud.hpp"
@@ -197,6 +198,40 @@ TEST(ContactList, misses_nobody_however_fast) {
     turned = std::max(turned, engine->particles().spin[i].norm());
   }
   EXPECT_GT(turned, 1);  // they did touch
+}
+
+TEST(ContactList, finds_pairs_where_floats_are_coarser_than_spheres) {
+  // In a box of 20 km floats have steps of up to 1 mm, the radius.
+  constexpr double length = 2e4;
+  Scene scene = box_scene(Vector3::Constant(length), {Axis::y});
+  add_laws(scene, 1000, 1.0, 0.0);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> anywhere(0.01 * length, 0.99 * length);
+  std::uniform_real_distribution<double> any(-1, 1);
+  ParticleState state;
+  constexpr double overlap = 1e-5;
+  const auto add_pair = [&](const Vector3& middle, const Vector3& direction) {
+    const Vector3 half = (1e-3 - 0.5 * overlap) * direction.normalized();
+    for (const double side : {-1.0, 1.0}) {
+      Vector3 place = middle + side * half;
+      if (place.y() < 0) place.y() += length;
+      add_sphere(state, place, Vector3::Zero(), 1e-3);
+    }
+  };
+  for (int k = 0; k < 200; ++k) {
+    const Vector3 direction(any(random), any(random), any(random));
+    // Every fourth pair lies across the periodic side.
+    add_pair({anywhere(random), k % 4 == 0 ? 0 : anywhere(random), anywhere(random)}, direction);
+  }
+  const auto engine = make_engine(scene, state);
+  run(*engine, 1e-6, 1e-6);
+  // Two kicks of half a step by k δ, the second by k dt²/m = 1e-4 less. (Places of 1e4 m are
+  // rounded by 2e-12, 1e-6 of the overlap.)
+  const double mass = 2250 * 4.0 / 3.0 * std::numbers::pi * 1e-9;
+  const double gained = 1000 * overlap / mass * 1e-6;
+  for (const Vector3& velocity : engine->particles().velocity) {
+    EXPECT_NEAR(velocity.norm(), gained, 1e-4 * gained);
+  }
 }
 
 TEST(ContactList, few_fast_ones_make_no_new_list_for_all) {

@@ -29,7 +29,8 @@ struct Sources {
   }
 };
 
-/// Relative errors of places in floats, and of what is reckoned from them, are less than this.
+/// Places in floats, and distances reckoned from them, are off by less than this share of the
+/// extent: some ten roundings of 6e-8 each (two offsets, the shift, differences, squares, sums).
 constexpr double float_margin = 1e-6;
 
 /// How far a particle may go [m], while the list is made.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include "tests/unit/dem_server/native/random_cloud.hpp"
 
